@@ -1,0 +1,220 @@
+//! What can be typed after `prf`: clap's types and nothing else.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap_complete::Shell;
+use prf_core::{DistanceScale, Norm};
+
+use crate::commands::init::Preset;
+use crate::printer::Format;
+
+const EXIT_CODES: &str = "\
+Exit codes: 0 done, 1 failed, 2 wrong arguments or config, 3 finished but some input was lost, \
+130 interrupted with the run saved.";
+
+const SCORE_EXIT_CODES: &str = "\
+Pictures that cannot be read are named on stderr and left out: exit code 3 if others could be scored, \
+1 if none could or if the goal itself cannot be read.";
+
+/// Show an agent a picture of the finished task; it learns to get there.
+#[derive(Debug, Parser)]
+#[command(name = "prf", version, after_help = EXIT_CODES)]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Train an agent as a config file says
+    Train(TrainArgs),
+    /// Play episodes with the greedy policy of a run or a checkpoint
+    Eval(EvalArgs),
+    /// Score pictures against a picture of the goal
+    #[command(after_help = SCORE_EXIT_CODES)]
+    Score(ScoreArgs),
+    /// Write a config file to start from, with its goal picture
+    Init(InitArgs),
+    /// Print a completion script for a shell
+    Completions(CompletionsArgs),
+}
+
+impl Command {
+    /// How this command's results are to be written to stdout.
+    pub(crate) fn format(&self) -> Format {
+        match self {
+            Self::Eval(args) => args.format,
+            Self::Score(args) => args.format,
+            Self::Train(_) | Self::Init(_) | Self::Completions(_) => Format::Text,
+        }
+    }
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct TrainArgs {
+    /// The config file (`prf init breakout` writes one)
+    pub(crate) config: PathBuf,
+    /// The run's folder [default: runs/<config>-<seed>]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// The seed everything random derives from, instead of the config's
+    #[arg(long, value_name = "N")]
+    pub(crate) seed: Option<u64>,
+    /// What computes the network
+    #[arg(long, value_enum, default_value_t = Device::Cpu)]
+    pub(crate) device: Device,
+    /// Change one key of the config, as in `--set train.steps=1000`; paths are relative to the
+    /// current folder
+    #[arg(long, value_name = "KEY.PATH=VALUE")]
+    pub(crate) set: Vec<String>,
+    /// Go on with the run in the folder
+    #[arg(long)]
+    pub(crate) resume: bool,
+    /// Print the complete config, the memory and the time it needs, and start nothing
+    #[arg(long)]
+    pub(crate) dry_run: bool,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum Device {
+    Cpu,
+    /// An NVIDIA GPU
+    Cuda,
+    /// The GPU of an Apple computer
+    Mps,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct EvalArgs {
+    /// The run's folder, or one of its checkpoints
+    pub(crate) run: PathBuf,
+    /// How many episodes to play
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) episodes: u32,
+    /// The seed of the episodes [default: 0]; none of them is trained or evaluated on during a run
+    #[arg(long, value_name = "N")]
+    pub(crate) seed: Option<u64>,
+    /// What computes the network
+    #[arg(long, value_enum, default_value_t = Device::Cpu)]
+    pub(crate) device: Device,
+    /// Draw the first episode into a moving picture
+    #[arg(long, value_name = "FILE.gif")]
+    pub(crate) render: Option<PathBuf>,
+    #[arg(long, value_enum, default_value_t = Format::Text, help = FORMAT_HELP)]
+    pub(crate) format: Format,
+}
+
+const FORMAT_HELP: &str = "How results are written: for people, or one JSON object a line";
+
+#[derive(Debug, Args)]
+pub(crate) struct ScoreArgs {
+    /// A picture of the finished task
+    pub(crate) goal: PathBuf,
+    /// The pictures to score
+    #[arg(required = true, value_name = "FRAME")]
+    pub(crate) frames: Vec<PathBuf>,
+    /// How frame and goal are compared
+    #[arg(long, value_enum, default_value_t = Descriptor::Direct)]
+    pub(crate) descriptor: Descriptor,
+    #[arg(long, value_enum, default_value_t = Format::Text, help = FORMAT_HELP)]
+    pub(crate) format: Format,
+    // Last, because its heading holds for all that follows.
+    #[command(flatten)]
+    pub(crate) reward: RewardArgs,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum Descriptor {
+    /// The whole frame with the whole goal, both cropped to what is not black
+    Direct,
+}
+
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Reward options")]
+pub(crate) struct RewardArgs {
+    /// Take the reward's settings from a config file's [reward]; the options below change single ones
+    #[arg(long, value_name = "FILE")]
+    pub(crate) config: Option<PathBuf>,
+    /// Side of a HOG cell, as a fraction of the cropped picture's height [default: 0.03]
+    #[arg(long, value_name = "FRACTION", conflicts_with = "cell_px", allow_negative_numbers = true)]
+    pub(crate) cell: Option<f32>,
+    /// Side of a HOG cell, in pixels
+    #[arg(long, value_name = "PX")]
+    pub(crate) cell_px: Option<usize>,
+    /// Number of edge directions told apart [default: 9]
+    #[arg(long, value_name = "N")]
+    pub(crate) orientations: Option<usize>,
+    /// Tell an edge from dark to light from one from light to dark
+    #[arg(long, value_name = "BOOL", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
+    pub(crate) signed: Option<bool>,
+    /// Cells a side of the blocks that are normalised together [default: 1]
+    #[arg(long, value_name = "N")]
+    pub(crate) block_cells: Option<usize>,
+    /// How a block is normalised [default: l2]
+    #[arg(long, value_enum)]
+    pub(crate) norm: Option<NormArg>,
+    /// What the distance is divided by before exp(-D) [default: sqrt-blocks]
+    #[arg(long, value_enum)]
+    pub(crate) scale: Option<ScaleArg>,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum NormArg {
+    None,
+    L1,
+    L1Sqrt,
+    L2,
+    /// L2, clipped at 0.2, and L2 again
+    L2Hys,
+}
+
+impl From<NormArg> for Norm {
+    fn from(norm: NormArg) -> Self {
+        match norm {
+            NormArg::None => Self::None,
+            NormArg::L1 => Self::L1,
+            NormArg::L1Sqrt => Self::L1Sqrt,
+            NormArg::L2 => Self::L2,
+            NormArg::L2Hys => Self::L2Hys,
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum ScaleArg {
+    /// 1: the paper's own formula
+    None,
+    /// The square root of the number of blocks
+    SqrtBlocks,
+    /// The square root of the number of HOG values
+    SqrtFeatures,
+}
+
+impl From<ScaleArg> for DistanceScale {
+    fn from(scale: ScaleArg) -> Self {
+        match scale {
+            ScaleArg::None => Self::None,
+            ScaleArg::SqrtBlocks => Self::SqrtBlocks,
+            ScaleArg::SqrtFeatures => Self::SqrtFeatures,
+        }
+    }
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct InitArgs {
+    /// Which config to write
+    pub(crate) preset: Preset,
+    /// The file to write (ending in .toml) or a folder for it [default: the current folder]
+    #[arg(long, value_name = "PATH")]
+    pub(crate) out: Option<PathBuf>,
+    /// Write over files that are there already
+    #[arg(long)]
+    pub(crate) force: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CompletionsArgs {
+    /// The shell to complete for
+    pub(crate) shell: Shell,
+}

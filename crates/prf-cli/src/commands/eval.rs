@@ -1,0 +1,161 @@
+//! `prf eval`: the greedy policy of a run, measured against the best and the worst player there is.
+
+use std::fs::File;
+use std::io::BufWriter;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use image::codecs::gif::{GifEncoder, Repeat};
+use image::{Delay, DynamicImage, GrayImage};
+use prf_core::Frame;
+use prf_dqn::checkpoint::{CheckpointStore, MODEL_FILE, Model};
+use prf_dqn::evaluate::{Episode, Spread, episode_seeds, play_greedily};
+use prf_dqn::learner::greedy_actions;
+use prf_dqn::network::QNetwork;
+use prf_dqn::run_dir::RunDir;
+use prf_dqn::trainer::{architecture, set_threads};
+use prf_envs::players::{Oracle, Random, mean_score};
+use prf_envs::{Status, Task, registry};
+use serde::Serialize;
+
+use super::learning;
+use crate::ExitStatus;
+use crate::args::EvalArgs;
+use crate::error::{CliError, Result};
+use crate::printer::{Format, Printer};
+use crate::settings::{LoadedRun, load_run};
+
+/// Episodes stepped together.
+const TOGETHER: usize = 64;
+/// Side of a pixel of the world in a rendered picture.
+const RENDER_SCALE: usize = 4;
+/// Time for which a frame is shown, in ms.
+const FRAME_MS: u64 = 60;
+
+#[derive(Debug, Serialize)]
+struct Report {
+    model: String,
+    episodes: usize,
+    seed: u64,
+    mean_score: f64,
+    std_score: f64,
+    mean_reward: f64,
+    mean_steps: f64,
+    oracle_score: f64,
+    random_score: f64,
+}
+
+pub(crate) fn run(args: &EvalArgs, printer: &mut Printer) -> Result<ExitStatus> {
+    let (run, model_path) = find_model(&args.run)?;
+    let loaded = load_run(&run.config_path(), &[], None)?;
+    let device = learning::open_device(args.device)?;
+    set_threads(&loaded.config);
+    let network = load(&loaded, &model_path, device).map_err(|error| learning::explain(error.into(), None))?;
+
+    let seed = args.seed.unwrap_or(0);
+    let seeds = episode_seeds(seed, "eval", args.episodes as usize);
+    let episodes = measure(&network, &loaded, &seeds)?;
+    if let Some(path) = &args.render {
+        render(&network, &loaded, seeds[0], path)?;
+        printer.note(format!("drew the first episode into {}", path.display()));
+    }
+    let mut world = registry::make(&loaded.config.env)?;
+    let score = Spread::of(episodes.iter().map(|episode| f64::from(episode.score)));
+    let report = Report {
+        model: model_path.display().to_string(),
+        episodes: episodes.len(),
+        seed,
+        mean_score: score.mean,
+        std_score: score.std,
+        mean_reward: Spread::of(episodes.iter().map(|episode| episode.reward)).mean,
+        mean_steps: Spread::of(episodes.iter().map(|episode| f64::from(episode.steps))).mean,
+        oracle_score: mean_score(world.as_mut(), &mut Oracle, seeds.iter().copied())?,
+        random_score: mean_score(world.as_mut(), &mut Random::new(), seeds.iter().copied())?,
+    };
+    print(&report, printer)?;
+    Ok(ExitStatus::Done)
+}
+
+/// The network in `model`, if it fits the run's task.
+fn load(loaded: &LoadedRun, model: &Path, device: tch::Device) -> prf_dqn::Result<QNetwork> {
+    let task = Task::new(&loaded.config.task(), loaded.goal.as_ref())?;
+    let found = Model::read(model)?;
+    found.check(&architecture(&task)?, model)?;
+    found.network(device)
+}
+
+/// The run folder and the model file that `path` (a run, one of its checkpoints or a model file) stands for.
+fn find_model(path: &Path) -> Result<(RunDir, PathBuf)> {
+    let model = if path.is_file() {
+        path.to_owned()
+    } else if path.join(MODEL_FILE).is_file() {
+        path.join(MODEL_FILE)
+    } else if let Some(newest) = CheckpointStore::list(path)?.pop() {
+        newest.join(MODEL_FILE)
+    } else {
+        let message = format!("there is no run with a checkpoint in {}", path.display());
+        return Err(CliError::misuse(message)
+            .hint("name the folder that `prf train` printed, or one of its checkpoints")
+            .into());
+    };
+    let run = model.ancestors().skip(1).find(|folder| folder.join("config.toml").is_file());
+    let run = run.ok_or_else(|| {
+        CliError::misuse(format!("no folder above {} has the run's config.toml", model.display()))
+            .hint("leave the checkpoint in its run's folder")
+    })?;
+    Ok((RunDir::at(run), model))
+}
+
+/// Plays every episode to its end, some at a time.
+fn measure(network: &QNetwork, loaded: &LoadedRun, seeds: &[u64]) -> prf_dqn::Result<Vec<Episode>> {
+    let task = loaded.config.task();
+    let make = || Ok(Task::new(&task, loaded.goal.as_ref())?);
+    let mut tasks = (0..seeds.len().min(TOGETHER)).map(|_| make()).collect::<prf_dqn::Result<Vec<_>>>()?;
+    let mut episodes = Vec::with_capacity(seeds.len());
+    for seeds in seeds.chunks(TOGETHER) {
+        episodes.extend(play_greedily(&mut tasks, seeds, |states, count| network.q_values(states, count))?);
+    }
+    Ok(episodes)
+}
+
+/// Plays one episode into an animated GIF.
+fn render(network: &QNetwork, loaded: &LoadedRun, seed: u64, path: &Path) -> Result<()> {
+    let mut task = Task::new(&loaded.config.task(), loaded.goal.as_ref())?;
+    let actions = task.spec().actions.len();
+    let cannot = |error: &dyn std::fmt::Display| CliError::failed(format!("cannot write {}: {error}", path.display()));
+    let file = File::create(path).map_err(|error| cannot(&error))?;
+    let mut gif = GifEncoder::new_with_speed(BufWriter::new(file), 10);
+    gif.set_repeat(Repeat::Infinite).map_err(|error| cannot(&error))?;
+    task.reset(seed);
+    loop {
+        gif.encode_frame(picture(&task)).map_err(|error| cannot(&error))?;
+        let values = network.q_values(task.observation(), 1)?;
+        let step = greedy_actions(&values, actions).next().map_or(Ok(None), |action| task.step(action).map(Some))?;
+        if step.is_none_or(|step| step.status != Status::Running) {
+            gif.encode_frame(picture(&task)).map_err(|error| cannot(&error))?;
+            return Ok(());
+        }
+    }
+}
+
+fn picture(task: &Task) -> image::Frame {
+    let spec = task.spec();
+    let (width, height) = (spec.width * RENDER_SCALE, spec.height * RENDER_SCALE);
+    let mut frame = Frame::new(width, height);
+    task.environment().draw_into(&mut frame);
+    let grey = GrayImage::from_raw(width as u32, height as u32, frame.as_slice().to_vec());
+    let rgba = DynamicImage::ImageLuma8(grey.expect("the frame has this size")).into_rgba8();
+    image::Frame::from_parts(rgba, 0, 0, Delay::from_saturating_duration(Duration::from_millis(FRAME_MS)))
+}
+
+fn print(report: &Report, printer: &mut Printer) -> Result<()> {
+    if printer.format() == Format::Json {
+        return printer.record(report);
+    }
+    let Report { episodes, mean_score, std_score, mean_reward, mean_steps, oracle_score, random_score, .. } = report;
+    printer.line(format!("{episodes} episodes of {}", report.model))?;
+    printer.line(format!("  score   {mean_score:.2} ± {std_score:.2}"))?;
+    printer.line(format!("  oracle  {oracle_score:.2}"))?;
+    printer.line(format!("  random  {random_score:.2}"))?;
+    printer.line(format!("  reward  {mean_reward:.2} an episode of {mean_steps:.1} steps"))
+}

@@ -1,0 +1,70 @@
+//! What `train` and `eval` share: devices, and the learner's errors in the words of the command line.
+
+use std::io::ErrorKind;
+
+use prf_dqn::record::TimeShares;
+
+use crate::args::Device;
+use crate::error::{CliError, Result};
+
+pub(super) fn open_device(device: Device) -> Result<tch::Device> {
+    let device = match device {
+        Device::Cpu => prf_dqn::device::Device::Cpu,
+        Device::Cuda => prf_dqn::device::Device::Cuda,
+        Device::Mps => prf_dqn::device::Device::Mps,
+    };
+    device.open().map_err(|error| CliError::failed(error.to_string()).into())
+}
+
+/// Adds what to do about an error of the learner.
+pub(super) fn explain(error: anyhow::Error, resume: Option<&str>) -> anyhow::Error {
+    let resume = resume.map_or(String::new(), |command| format!(", then go on with\n  {command}"));
+    match error.downcast_ref::<prf_dqn::Error>() {
+        Some(prf_dqn::Error::Io { source, path, .. }) => match source.kind() {
+            ErrorKind::AlreadyExists => {
+                CliError::misuse(format!("the run folder {} is there already and not empty", path.display()))
+                    .hint("go on with it by --resume, or name another by --out")
+                    .into()
+            }
+            ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge => {
+                CliError::failed(error.to_string())
+                    .hint(format!("what was saved before is whole; make room{resume}"))
+                    .into()
+            }
+            ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
+                CliError::failed(error.to_string()).hint("name a folder you can write to with --out").into()
+            }
+            _ => error,
+        },
+        Some(prf_dqn::Error::Checkpoint { .. }) => CliError::failed(error.to_string())
+            .hint("remove the damaged checkpoint to fall back on the one before it, or start anew with another --out")
+            .into(),
+        _ => error,
+    }
+}
+
+/// Where the time of a run went, in one line.
+pub(super) fn time_line(time: &TimeShares) -> String {
+    let share = |seconds: f64| 100.0 * seconds / time.total_s().max(f64::EPSILON);
+    format!(
+        "{} in all: updates {:.0}%, acting {:.0}%, worlds and rewards {:.0}%, replay {:.0}%, evaluation {:.0}%, \
+         checkpoints {:.0}%",
+        duration(time.total_s()),
+        share(time.updates_s),
+        share(time.acting_s),
+        share(time.worlds_s),
+        share(time.replay_s),
+        share(time.evaluation_s),
+        share(time.checkpoints_s),
+    )
+}
+
+/// A time for people.
+pub(super) fn duration(seconds: f64) -> String {
+    let total = seconds.round() as u64;
+    match (total / 3600, total / 60 % 60, total % 60) {
+        (0, 0, seconds) => format!("{seconds} s"),
+        (0, minutes, seconds) => format!("{minutes} min {seconds} s"),
+        (hours, minutes, _) => format!("{hours} h {minutes} min"),
+    }
+}

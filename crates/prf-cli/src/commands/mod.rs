@@ -1,0 +1,40 @@
+//! The commands, one file each.
+
+use crate::ExitStatus;
+use crate::args::Command;
+use crate::error::Result;
+use crate::printer::Printer;
+
+mod completions;
+#[cfg(feature = "train")]
+mod eval;
+pub(crate) mod init;
+#[cfg(feature = "train")]
+mod learning;
+mod score;
+#[cfg(feature = "train")]
+mod train;
+
+/// Does what the command line asks for.
+pub(crate) fn run(command: Command, printer: &mut Printer) -> Result<ExitStatus> {
+    match command {
+        #[cfg(feature = "train")]
+        Command::Train(args) => train::run(&args, printer),
+        #[cfg(feature = "train")]
+        Command::Eval(args) => eval::run(&args, printer),
+        #[cfg(not(feature = "train"))]
+        Command::Train(_) | Command::Eval(_) => Err(without_training()),
+        Command::Score(args) => score::run(&args, printer),
+        Command::Init(args) => init::run(&args, printer),
+        Command::Completions(args) => completions::run(&args, printer),
+    }
+}
+
+#[cfg(not(feature = "train"))]
+fn without_training() -> anyhow::Error {
+    crate::error::CliError::failed(
+        "this prf was built without training; to get `train` and `eval`, install it with \
+         `cargo xtask setup && cargo install --path crates/prf-cli` in PRF's repository",
+    )
+    .into()
+}

@@ -1,0 +1,135 @@
+//! `prf train`: from a config to a trained agent in a run folder.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use prf_dqn::estimate::Estimate;
+use prf_dqn::run_dir::{Manifest, RunDir};
+use prf_dqn::trainer::{Ending, Trainer, set_threads};
+
+use super::learning;
+use crate::ExitStatus;
+use crate::args::TrainArgs;
+use crate::error::{CliError, Result};
+use crate::printer::Printer;
+use crate::progress::ProgressReporter;
+use crate::settings::{LoadedRun, load_run};
+
+pub(crate) fn run(args: &TrainArgs, printer: &mut Printer) -> Result<ExitStatus> {
+    let loaded = load_run(&args.config, &args.set, args.seed)?;
+    let device = learning::open_device(args.device)?;
+    let threads = set_threads(&loaded.config);
+    if args.dry_run {
+        return dry_run(&loaded, device, printer);
+    }
+    let (run, loaded) = open_run(args, loaded)?;
+    let seed = loaded.config.seed;
+    let resume = resume_command(args, run.path());
+    let outcome = (|| {
+        let mut trainer = Trainer::open(loaded.config, loaded.goal.as_ref(), &run, device)?;
+        let resumed = if trainer.steps() > 0 { format!(", from step {}", trainer.steps()) } else { String::new() };
+        printer.note(format!("seed {seed}, {threads} threads, run folder {}{resumed}", run.path().display()));
+        let mut reporter = ProgressReporter::new();
+        let stop = stop_on_interrupt()?;
+        let ending = trainer.run(&mut reporter, &|| stop.load(Ordering::Relaxed));
+        reporter.finish();
+        let ending = ending?;
+        run.write_manifest(&Manifest {
+            prf_version: env!("CARGO_PKG_VERSION"),
+            libtorch_version: prf_dqn::LIBTORCH_VERSION,
+            seed,
+            device: format!("{device:?}"),
+            threads,
+            steps: trainer.steps(),
+            finished: ending == Ending::Finished,
+            time: trainer.time(),
+        })?;
+        Ok((ending, trainer.time(), trainer.last_score()))
+    })();
+    let (ending, time, score) = outcome.map_err(|error| learning::explain(error, Some(&resume)))?;
+    match ending {
+        Ending::Interrupted => {
+            printer.note(format!("interrupted; the run is saved, go on with\n  {resume}"));
+            Ok(ExitStatus::Interrupted)
+        }
+        Ending::Finished => {
+            printer.note(learning::time_line(&time));
+            let score = score.map_or(String::new(), |score| format!(" with a greedy score of {score:.2}"));
+            printer
+                .note(format!("finished{score}; see it play: prf eval {0} --render {0}/play.gif", shown(run.path())));
+            printer.line(run.path().display())?;
+            Ok(ExitStatus::Done)
+        }
+    }
+}
+
+/// Prints what a run would be: its whole config as TOML, with the costs as comments.
+fn dry_run(loaded: &LoadedRun, device: tch::Device, printer: &mut Printer) -> Result<ExitStatus> {
+    let estimate = Estimate::of(&loaded.config, loaded.goal.as_ref(), device)
+        .map_err(|error| learning::explain(error.into(), None))?;
+    let mut config = loaded.config.clone();
+    config.reward.goal.clone_from(&loaded.goal_path);
+    printer.line(toml::to_string(&config)?.trim_end())?;
+    let up_to = if config.train.episodes.is_some() { "at most " } else { "about " };
+    printer.line(format!("\n# replay memory: {:.2} GB when full", estimate.replay_bytes as f64 / 1e9))?;
+    printer.line(format!("# steps: {up_to}{}", estimate.steps))?;
+    printer.line(format!("# time on this machine: {up_to}{}", learning::duration(estimate.seconds)))?;
+    Ok(ExitStatus::Done)
+}
+
+/// A new run folder, or with `--resume` the one that is there, which then brings its own config and goal.
+fn open_run(args: &TrainArgs, loaded: LoadedRun) -> Result<(RunDir, LoadedRun)> {
+    let path = args.out.clone().unwrap_or_else(|| default_folder(&args.config, loaded.config.seed));
+    if !args.resume {
+        let run = RunDir::create(&path, &loaded.config, loaded.goal.as_ref())
+            .map_err(|error| learning::explain(error.into(), None))?;
+        return Ok((run, loaded));
+    }
+    let run = RunDir::at(&path);
+    if !run.config_path().is_file() {
+        let message = format!("there is no run to resume in {}: it has no config.toml", path.display());
+        return Err(CliError::misuse(message)
+            .hint("name the run's folder with --out, or start it without --resume")
+            .into());
+    }
+    let own = load_run(&run.config_path(), &[], None)?;
+    let mut asked = loaded.config;
+    asked.reward.goal.clone_from(&own.config.reward.goal);
+    if asked != own.config {
+        let message =
+            format!("{} was started with another config or seed than {}", path.display(), args.config.display());
+        let hint = format!("resume it as it was: prf train {0}/config.toml --out {0} --resume", shown(&path));
+        return Err(CliError::misuse(message).hint(hint).into());
+    }
+    Ok((run, own))
+}
+
+fn default_folder(config: &Path, seed: u64) -> PathBuf {
+    let name = config.file_stem().unwrap_or_default().to_string_lossy();
+    Path::new("runs").join(format!("{name}-{seed}"))
+}
+
+fn resume_command(args: &TrainArgs, run: &Path) -> String {
+    let mut command = format!("prf train {} --out {} --resume", shown(&args.config), shown(run));
+    if let Some(seed) = args.seed {
+        command.push_str(&format!(" --seed {seed}"));
+    }
+    for set in &args.set {
+        command.push_str(&format!(" --set '{set}'"));
+    }
+    command
+}
+
+/// A path as it can be typed again.
+fn shown(path: &Path) -> String {
+    let text = path.display().to_string();
+    if text.contains(char::is_whitespace) { format!("'{text}'") } else { text }
+}
+
+fn stop_on_interrupt() -> Result<Arc<AtomicBool>> {
+    let stop = Arc::new(AtomicBool::new(false));
+    let handle = Arc::clone(&stop);
+    ctrlc::set_handler(move || handle.store(true, Ordering::Relaxed))?;
+    Ok(stop)
+}

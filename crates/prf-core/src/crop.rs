@@ -1,0 +1,52 @@
+//! The box around what is not black (paper, section "Perceptual reward functions").
+
+use crate::FrameView;
+
+/// A rectangle of pixels; `x` and `y` are its left column and top row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Rect {
+    /// Left column.
+    pub x: usize,
+    /// Top row.
+    pub y: usize,
+    /// Columns, at least 1.
+    pub width: usize,
+    /// Rows, at least 1.
+    pub height: usize,
+}
+
+/// The smallest box that holds every pixel that is not black, which is also the smallest box around
+/// their convex hull. A picture that is black all over has no hull: the box is the whole picture.
+///
+/// ```
+/// use prf_core::{crop_box, Frame, Rect};
+/// let mut frame = Frame::new(10, 8);
+/// frame.row_mut(2)[3] = 255;
+/// frame.row_mut(5)[7] = 1;
+/// assert_eq!(crop_box(frame.view()), Rect { x: 3, y: 2, width: 5, height: 4 });
+/// ```
+#[must_use]
+pub fn crop_box(frame: FrameView<'_>) -> Rect {
+    let (width, height) = (frame.width(), frame.height());
+    let lit = |&y: &usize| has_light(frame.row(y));
+    let (Some(top), Some(bottom)) = ((0..height).find(lit), (0..height).rfind(lit)) else {
+        return Rect { x: 0, y: 0, width, height };
+    };
+    // Of each row only what could still widen the box is looked at.
+    let (mut left, mut right) = (width, 0);
+    for y in top..=bottom {
+        let row = frame.row(y);
+        if let Some(first) = row[..left].iter().position(|&v| v != 0) {
+            left = first;
+        }
+        if let Some(last) = row[right..].iter().rposition(|&v| v != 0) {
+            right += last + 1;
+        }
+    }
+    Rect { x: left, y: top, width: right - left, height: bottom - top + 1 }
+}
+
+/// Whether a pixel is not black. Without an early exit, so that it runs many bytes at a time.
+fn has_light(row: &[u8]) -> bool {
+    row.iter().fold(0, |seen, &v| seen | v) != 0
+}

@@ -1,0 +1,65 @@
+//! From pixels to a reward: crop, rescale, HOG, distance, `F = exp(-D)`.
+//!
+//! This is the arithmetic of "Perceptual Reward Functions" (Edwards, Isbell and Takanishi, 2016): the
+//! reward of a frame says how much it looks like a picture of the finished task. Everything here is
+//! deterministic, runs on one thread and draws no random numbers.
+//!
+//! ```
+//! use prf_core::{DirectDescriptor, Frame, RewardParams, TaskDescriptor};
+//!
+//! let goal = Frame::new(84, 84); // a black picture: nothing is left to do
+//! let mut descriptor = DirectDescriptor::new(&goal, RewardParams::default())?;
+//!
+//! let mut frame = Frame::new(84, 84);
+//! assert_eq!(descriptor.observe(frame.view()).reward, 1.0); // the goal itself
+//!
+//! frame.row_mut(40)[20..60].fill(255);
+//! frame.row_mut(70)[30..40].fill(255);
+//! let score = descriptor.observe(frame.view());
+//! assert!(score.distance > 0.0 && score.reward < 1.0);
+//! # Ok::<(), prf_core::Error>(())
+//! ```
+//!
+//! The way of one frame, and where each part lives:
+//!
+//! | Step | Item |
+//! |---|---|
+//! | colour to grey | [`luma`] |
+//! | grey pictures | [`Frame`], [`FrameView`] (bytes); [`Plane`], [`PlaneView`] (floats) |
+//! | box around what is not black | [`crop_box`] |
+//! | bring both templates to one size | [`Resizer`] |
+//! | histograms of oriented gradients | [`Hog`], [`HogParams`], [`HogLayout`] |
+//! | distance and reward | [`RewardParams`], [`Score`] |
+//! | the goal, prepared once | [`TaskDescriptor`], [`DirectDescriptor`] |
+//! | what the network sees | [`EmaState`] |
+//! | does a reward order states rightly | [`spearman`] |
+//! | pictures in files (feature `io`) | `io::read_frame`, `io::write_frame` |
+//!
+//! `docs/reward.md` in the repository has every formula with a worked example.
+
+mod crop;
+mod descriptor;
+mod ema;
+mod error;
+mod frame;
+mod gradient;
+mod hog;
+#[cfg(feature = "io")]
+pub mod io;
+pub mod luma;
+mod plane;
+mod rank;
+mod region;
+mod resize;
+mod reward;
+
+pub use crop::{Rect, crop_box};
+pub use descriptor::{DirectDescriptor, TaskDescriptor};
+pub use ema::EmaState;
+pub use error::{Error, PictureProblem};
+pub use frame::{Frame, FrameView};
+pub use hog::{CellSize, Hog, HogLayout, HogParams, Norm};
+pub use plane::{Plane, PlaneView};
+pub use rank::spearman;
+pub use resize::Resizer;
+pub use reward::{DistanceScale, RewardParams, Score};

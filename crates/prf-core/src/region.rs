@@ -1,0 +1,75 @@
+//! A rectangle of pixels inside a larger picture, and the two kinds of pixel.
+
+/// A pixel's value: a byte, or a float in [0, 1].
+pub(crate) trait Sample: Copy + PartialEq {
+    /// White, in the sample's own unit; black is 0.
+    const WHITE: f32;
+    /// The value in its own unit, exactly.
+    fn value(self) -> f32;
+    /// `self - other` in the sample's own unit. Exact for bytes, so that a gradient of bytes is too.
+    fn minus(self, other: Self) -> f32;
+}
+
+impl Sample for u8 {
+    const WHITE: f32 = 255.0;
+
+    fn value(self) -> f32 {
+        f32::from(self)
+    }
+
+    fn minus(self, other: u8) -> f32 {
+        f32::from(i16::from(self) - i16::from(other))
+    }
+}
+
+impl Sample for f32 {
+    const WHITE: f32 = 1.0;
+
+    fn value(self) -> f32 {
+        self
+    }
+
+    fn minus(self, other: f32) -> f32 {
+        self - other
+    }
+}
+
+/// Pixels whose rows lie `stride` apart.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Region<'a, P> {
+    pixels: &'a [P],
+    stride: usize,
+    width: usize,
+    height: usize,
+}
+
+impl<'a, P> Region<'a, P> {
+    /// A whole picture. `pixels` holds `width * height` values, both at least 1.
+    pub(crate) fn whole(width: usize, height: usize, pixels: &'a [P]) -> Region<'a, P> {
+        debug_assert_eq!(pixels.len(), width * height);
+        Region { pixels, stride: width, width, height }
+    }
+
+    /// The part of it inside `rect`, which lies within it.
+    pub(crate) fn within(self, rect: crate::Rect) -> Region<'a, P> {
+        debug_assert!(rect.x + rect.width <= self.width && rect.y + rect.height <= self.height);
+        Region { pixels: &self.pixels[rect.y * self.stride + rect.x..], width: rect.width, height: rect.height, ..self }
+    }
+
+    pub(crate) fn width(&self) -> usize {
+        self.width
+    }
+
+    pub(crate) fn height(&self) -> usize {
+        self.height
+    }
+
+    /// `[height, width]`.
+    pub(crate) fn shape(&self) -> [usize; 2] {
+        [self.height, self.width]
+    }
+
+    pub(crate) fn row(&self, y: usize) -> &'a [P] {
+        &self.pixels[y * self.stride..][..self.width]
+    }
+}

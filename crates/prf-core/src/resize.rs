@@ -1,0 +1,201 @@
+//! Bilinear rescaling to an exact size, in `f32`.
+//!
+//! Pixel centres lie at half integers, so the whole picture maps onto the whole picture. Along a side
+//! that shrinks, the triangle filter is widened by the same factor, so that no pixel is skipped. The
+//! weights of a pair of sizes are prepared once and kept until another pair comes.
+//!
+//! Where neighbours are equal the result is exactly their value: an interpolated flat area has no
+//! gradient at all. Normalisation knows no scale, so HOG would blow up the least rounding.
+
+use crate::region::{Region, Sample};
+use crate::{Error, FrameView, PlaneView};
+
+/// Rescales pictures and keeps its working memory: after the first picture of a size nothing is
+/// allocated.
+///
+/// ```
+/// use prf_core::{FrameView, Resizer};
+/// let mut resizer = Resizer::default();
+/// let wide = resizer.resize(FrameView::new(2, 1, &[0, 255])?, 4, 1)?;
+/// assert_eq!(wide.as_slice(), [0.0, 0.25, 0.75, 1.0]);
+/// # Ok::<(), prf_core::Error>(())
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct Resizer {
+    across: Taps,
+    down: Taps,
+    /// The source with its width already rescaled, row by row.
+    widened: Vec<f32>,
+    output: Vec<f32>,
+}
+
+impl Resizer {
+    /// The picture at `width` by `height` pixels, as floats from 0 (black) to 1 (white).
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Shape`] when a side is 0 or their product doesn't fit a `usize`.
+    pub fn resize(&mut self, image: FrameView<'_>, width: usize, height: usize) -> Result<PlaneView<'_>, Error> {
+        let len = width.checked_mul(height).unwrap_or(0);
+        crate::frame::check_shape(width, height, len)?;
+        self.rescale(image.region(), [height, width]);
+        PlaneView::new(width, height, &self.output)
+    }
+
+    /// The region at `[height, width]`, as floats from 0 (black) to 1 (white).
+    pub(crate) fn rescale<P: Sample>(&mut self, image: Region<'_, P>, [height, width]: [usize; 2]) -> Region<'_, f32> {
+        self.across.prepare(image.width(), width);
+        self.down.prepare(image.height(), height);
+        self.widened.resize(image.height() * width, 0.0);
+        self.output.resize(height * width, 0.0);
+        for (y, out) in self.widened.chunks_exact_mut(width).enumerate() {
+            self.across.mix_pixels(image.row(y), out);
+        }
+        let widened = Region::whole(width, image.height(), &self.widened);
+        for (y, out) in self.output.chunks_exact_mut(width).enumerate() {
+            self.down.mix_rows(widened, y, out);
+        }
+        Region::whole(width, height, &self.output)
+    }
+}
+
+/// For every position along a side of the result: the source's positions that go into it, which lie
+/// side by side, and their weights. As weights add up to 1, the first one follows from the others:
+/// `Σ w_k p_k = p_0 + Σ_{k>0} w_k (p_k − p_0)`.
+#[derive(Clone, Debug, Default)]
+struct Taps {
+    from: usize,
+    to: usize,
+    starts: Vec<usize>,
+    /// Source positions for each result.
+    count: usize,
+    /// The second weights of all results, then the third, up to the last.
+    weights: Vec<f32>,
+}
+
+impl Taps {
+    fn prepare(&mut self, from: usize, to: usize) {
+        if (self.from, self.to) == (from, to) {
+            return;
+        }
+        (self.from, self.to) = (from, to);
+        self.starts.clear();
+        self.weights.clear();
+        if from == to {
+            self.count = 1;
+            self.starts.extend(0..to);
+            return;
+        }
+        let scale = from as f64 / to as f64;
+        let reach = scale.max(1.0);
+        self.count = ((2.0 * reach).ceil() as usize).min(from);
+        self.weights.resize(to * (self.count - 1), 0.0);
+        for i in 0..to {
+            let centre = (i as f64 + 0.5) * scale - 0.5;
+            self.set(i, centre, reach);
+        }
+    }
+
+    /// Gives result `i` the triangle of half width `reach` around `centre`, cut off at the border.
+    fn set(&mut self, i: usize, centre: f64, reach: f64) {
+        let first = (centre - reach).floor() as isize + 1;
+        let start = usize::try_from(first).unwrap_or(0).min(self.from - self.count);
+        let weight = |k: usize| (1.0 - ((start + k) as f64 - centre).abs() / reach).max(0.0);
+        let total: f64 = (0..self.count).map(weight).sum();
+        self.starts.push(start);
+        for k in 1..self.count {
+            self.weights[(k - 1) * self.to + i] = (weight(k) / total) as f32;
+        }
+    }
+
+    /// Along a row.
+    fn mix_pixels<P: Sample>(&self, row: &[P], out: &mut [f32]) {
+        for (out, &start) in out.iter_mut().zip(&self.starts) {
+            *out = row[start].value();
+        }
+        for (k, weights) in (1..).zip(self.weights.chunks_exact(self.to)) {
+            for ((out, &start), weight) in out.iter_mut().zip(&self.starts).zip(weights) {
+                *out += weight * row[start + k].minus(row[start]);
+            }
+        }
+        out.iter_mut().for_each(|v| *v /= P::WHITE);
+    }
+
+    /// Row `i` of the result, of whole rows.
+    fn mix_rows(&self, rows: Region<'_, f32>, i: usize, out: &mut [f32]) {
+        let start = self.starts[i];
+        let first = rows.row(start);
+        out.copy_from_slice(first);
+        for (k, weights) in (1..).zip(self.weights.chunks_exact(self.to)) {
+            let (row, weight) = (rows.row(start + k), weights[i]);
+            for ((out, pixel), first) in out.iter_mut().zip(row).zip(first) {
+                *out += weight * (pixel - first);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use fast_image_resize as fir;
+
+    use super::*;
+    use crate::Frame;
+
+    fn noise(width: usize, height: usize) -> Frame {
+        let pixel = |i: usize| (i.wrapping_mul(2_654_435_761) >> 13) as u8;
+        Frame::from_vec(width, height, (0..width * height).map(pixel).collect()).expect("sides above 0")
+    }
+
+    /// The same by an independent implementation.
+    fn reference(image: &Frame, width: usize, height: usize) -> Vec<f32> {
+        let pixels = image.as_slice().iter().map(|&v| fir::pixels::F32::new(f32::from(v) / 255.0)).collect();
+        let (from_width, from_height) = (image.width() as u32, image.height() as u32);
+        let source = fir::images::TypedImage::from_pixels(from_width, from_height, pixels).expect("as many pixels");
+        let mut target = fir::images::TypedImage::new(width as u32, height as u32);
+        let bilinear = fir::ResizeAlg::Convolution(fir::FilterType::Bilinear);
+        let options = fir::ResizeOptions::new().resize_alg(bilinear);
+        fir::Resizer::new().resize_typed(&source, &mut target, &options).expect("sides above 0");
+        target.pixels().iter().map(|pixel| pixel.0).collect()
+    }
+
+    #[test]
+    fn agrees_with_an_independent_implementation() {
+        let mut resizer = Resizer::default();
+        // Larger, smaller, both at once, by whole and broken factors, single rows and columns.
+        for (from, to) in [
+            ((20, 30), (84, 84)),
+            ((84, 84), (20, 31)),
+            ((40, 12), (9, 33)),
+            ((33, 33), (33, 50)),
+            ((1, 9), (5, 1)),
+            ((17, 1), (4, 6)),
+        ] {
+            let image = noise(from.0, from.1);
+            let got = resizer.resize(image.view(), to.0, to.1).expect("sides above 0");
+            for (got, expected) in got.as_slice().iter().zip(reference(&image, to.0, to.1)) {
+                assert!((got - expected).abs() < 2e-6, "{got} for {expected}, {from:?} to {to:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn flat_stays_exactly_flat() {
+        let mut image = Frame::new(13, 7);
+        image.fill(187);
+        let mut resizer = Resizer::default();
+        for (width, height) in [(84, 60), (5, 3), (3, 50), (13, 7)] {
+            let plane = resizer.resize(image.view(), width, height).expect("sides above 0");
+            assert!(plane.as_slice().iter().all(|v| *v == plane.as_slice()[0]));
+        }
+    }
+
+    #[test]
+    fn a_size_without_pixels_is_an_error() {
+        let image = noise(4, 4);
+        let mut resizer = Resizer::default();
+        for (width, height) in [(0, 4), (4, 0), (usize::MAX, 2)] {
+            assert!(resizer.resize(image.view(), width, height).is_err());
+        }
+    }
+}

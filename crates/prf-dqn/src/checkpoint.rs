@@ -1,0 +1,124 @@
+//! Everything a run needs to go on, in a directory that is there whole or not at all.
+
+use std::collections::BTreeMap;
+use std::fs::{self, File};
+use std::io::Write;
+use std::path::Path;
+
+use safetensors::tensor::TensorView;
+use safetensors::{Dtype, SafeTensors};
+
+use crate::error::{Error, Result};
+use crate::network::Architecture;
+
+mod model;
+mod store;
+
+pub use model::Model;
+pub use store::CheckpointStore;
+pub(crate) use store::Segment;
+
+const STATE_FILE: &str = "state.safetensors";
+/// The network's parameters, by name: the file of a checkpoint that is enough to play.
+pub const MODEL_FILE: &str = "model.safetensors";
+/// Key of the JSON text in the metadata of [`STATE_FILE`].
+const STATE_KEY: &str = "prf";
+
+/// What a checkpoint holds besides the replay.
+#[derive(Debug)]
+pub struct Checkpoint {
+    /// Counters and the like, as JSON.
+    pub state: String,
+    /// Named byte strings: random streams and tasks.
+    pub blobs: BTreeMap<String, Vec<u8>>,
+    /// Named parameter vectors: target network and Adam's moments.
+    pub vectors: BTreeMap<String, Vec<f32>>,
+    /// The online network.
+    pub model: Model,
+}
+
+impl Checkpoint {
+    /// Writes the checkpoint's files into the existing, empty directory `dir`.
+    fn write(&self, dir: &Path) -> Result<()> {
+        self.model.write(&dir.join(MODEL_FILE))?;
+        let path = dir.join(STATE_FILE);
+        let vectors: BTreeMap<&String, Vec<u8>> = self.vectors.iter().map(|(k, v)| (k, f32_bytes(v))).collect();
+        let mut tensors = Vec::new();
+        for (name, bytes) in &self.blobs {
+            tensors.push((name.as_str(), view(Dtype::U8, vec![bytes.len()], bytes)));
+        }
+        for (name, bytes) in &vectors {
+            tensors.push((name.as_str(), view(Dtype::F32, vec![bytes.len() / 4], bytes)));
+        }
+        let metadata = [(STATE_KEY.to_owned(), self.state.clone())].into();
+        let bytes = safetensors::serialize(tensors, Some(metadata)).expect("names are distinct and sizes consistent");
+        write_synced(&path, &bytes)
+    }
+
+    /// Reads a checkpoint's directory.
+    ///
+    /// # Errors
+    /// [`Error::Checkpoint`] for a file that is cut short, damaged or made for another network; [`Error::Io`] when it
+    /// cannot be read.
+    pub fn read(dir: &Path, architecture: &Architecture) -> Result<Self> {
+        let model = Model::read(&dir.join(MODEL_FILE))?;
+        model.check(architecture, &dir.join(MODEL_FILE))?;
+        let path = dir.join(STATE_FILE);
+        let bytes = fs::read(&path).map_err(Error::io("read", &path))?;
+        let whole = "a whole checkpoint of this version";
+        let damaged = |error: safetensors::SafeTensorError| Error::checkpoint(&path, error, whole);
+        let (_, metadata) = SafeTensors::read_metadata(&bytes).map_err(damaged)?;
+        let state = metadata.metadata().as_ref().and_then(|map| map.get(STATE_KEY)).cloned();
+        let state = state.ok_or_else(|| Error::checkpoint(&path, "no run state", whole))?;
+        let (mut blobs, mut vectors) = (BTreeMap::new(), BTreeMap::new());
+        for (name, tensor) in SafeTensors::deserialize(&bytes).map_err(damaged)?.iter() {
+            match tensor.dtype() {
+                Dtype::F32 => drop(vectors.insert(name.to_owned(), bytes_f32(tensor.data()))),
+                Dtype::U8 => drop(blobs.insert(name.to_owned(), tensor.data().to_vec())),
+                other => return Err(Error::checkpoint(&path, format!("`{name}` of type {other}"), whole)),
+            }
+        }
+        Ok(Self { state, blobs, vectors, model })
+    }
+
+    /// Takes the byte string `name` out.
+    pub(crate) fn blob(&mut self, name: &str, dir: &Path) -> Result<Vec<u8>> {
+        self.blobs.remove(name).ok_or_else(|| missing(name, dir))
+    }
+
+    /// Takes the vector `name`, of `count` numbers, out.
+    pub(crate) fn vector(&mut self, name: &str, count: usize, dir: &Path) -> Result<Vec<f32>> {
+        let vector = self.vectors.remove(name).ok_or_else(|| missing(name, dir))?;
+        if vector.len() == count {
+            return Ok(vector);
+        }
+        let got = format!("{} numbers in `{name}`", vector.len());
+        Err(Error::checkpoint(dir.join(STATE_FILE), got, format!("{count}, as the network has parameters")))
+    }
+}
+
+fn missing(name: &str, dir: &Path) -> Error {
+    Error::checkpoint(dir.join(STATE_FILE), format!("no `{name}`"), "a checkpoint of this version and configuration")
+}
+
+fn view(dtype: Dtype, shape: Vec<usize>, bytes: &[u8]) -> TensorView<'_> {
+    TensorView::new(dtype, shape, bytes).expect("the shape was computed from the bytes")
+}
+
+fn f32_bytes(values: &[f32]) -> Vec<u8> {
+    values.iter().flat_map(|value| value.to_le_bytes()).collect()
+}
+
+fn bytes_f32(bytes: &[u8]) -> Vec<f32> {
+    bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect()
+}
+
+/// Writes a new file and waits until it is on the disk.
+fn write_synced(path: &Path, bytes: &[u8]) -> Result<()> {
+    let write = || {
+        let mut file = File::create(path)?;
+        file.write_all(bytes)?;
+        file.sync_all()
+    };
+    write().map_err(Error::io("write", path))
+}

@@ -1,0 +1,144 @@
+//! `model.safetensors`: a network's parameters by name, enough to play with.
+
+use std::collections::HashMap;
+use std::fs;
+use std::io::Write;
+use std::path::Path;
+
+use safetensors::{Dtype, SafeTensors};
+
+use super::{bytes_f32, f32_bytes, view};
+use crate::error::{Error, Result};
+use crate::network::{Architecture, QNetwork};
+
+/// A network's shape and parameters.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Model {
+    /// The shape.
+    pub architecture: Architecture,
+    /// The parameters, in the order of [`Architecture::parameters`].
+    pub values: Vec<f32>,
+}
+
+impl Model {
+    /// The model of a network.
+    pub fn of(network: &QNetwork) -> Result<Self> {
+        Ok(Self { architecture: network.architecture().clone(), values: network.to_vec()? })
+    }
+
+    /// The network of this model.
+    pub fn network(&self, device: tch::Device) -> Result<QNetwork> {
+        QNetwork::from_flat(self.architecture.clone(), &self.values, device)
+    }
+
+    /// Writes the file whole or, on an error, not at all.
+    pub fn write(&self, path: &Path) -> Result<()> {
+        let bytes = self.to_bytes();
+        let dir = path.parent().unwrap_or(Path::new("."));
+        let write = || {
+            let mut file = tempfile::NamedTempFile::new_in(dir)?;
+            file.write_all(&bytes)?;
+            file.as_file().sync_all()?;
+            file.persist(path).map_err(|error| error.error)
+        };
+        write().map(drop).map_err(Error::io("write", path))
+    }
+
+    fn to_bytes(&self) -> Vec<u8> {
+        let bytes = f32_bytes(&self.values);
+        let mut rest = bytes.as_slice();
+        let mut tensors = Vec::new();
+        for (name, shape) in self.architecture.parameters() {
+            let shape: Vec<usize> = shape.into_iter().map(|side| side as usize).collect();
+            let (head, tail) = rest.split_at(4 * shape.iter().product::<usize>());
+            tensors.push((name, view(Dtype::F32, shape, head)));
+            rest = tail;
+        }
+        let [height, width] = self.architecture.input;
+        let metadata = HashMap::from([("input".to_owned(), format!("{height}x{width}"))]);
+        safetensors::serialize(tensors, Some(metadata)).expect("names are distinct and sizes consistent")
+    }
+
+    /// Reads a model file.
+    ///
+    /// # Errors
+    /// [`Error::Checkpoint`] when the file is damaged or holds no network of this crate; [`Error::Io`] when it cannot
+    /// be read.
+    pub fn read(path: &Path) -> Result<Self> {
+        let bytes = fs::read(path).map_err(Error::io("read", path))?;
+        let damaged = |error: safetensors::SafeTensorError| Error::checkpoint(path, error, "a whole safetensors file");
+        let (_, metadata) = SafeTensors::read_metadata(&bytes).map_err(damaged)?;
+        let tensors = SafeTensors::deserialize(&bytes).map_err(damaged)?;
+        let input = metadata.metadata().as_ref().and_then(|map| map.get("input"));
+        let input = input.and_then(|text| text.split_once('x'));
+        let input = input.and_then(|(height, width)| Some([height.parse().ok()?, width.parse().ok()?]));
+        let input = input.filter(|sides: &[i64; 2]| {
+            sides.iter().all(|side| (Architecture::smallest_input()..=1 << 14).contains(side))
+        });
+        let input = input.ok_or_else(|| Error::checkpoint(path, "no input size", "a model written by prf"))?;
+        let output = tensors.tensor("output.bias").map_err(damaged)?;
+        let architecture = Architecture { input, actions: output.shape().iter().product::<usize>() as i64 };
+        let mut values = Vec::new();
+        for (name, shape) in architecture.parameters() {
+            let tensor = tensors.tensor(&name).map_err(damaged)?;
+            let found: Vec<i64> = tensor.shape().iter().map(|side| *side as i64).collect();
+            if tensor.dtype() != Dtype::F32 || found != shape {
+                let got = format!("`{name}` of type {} and shape {found:?}", tensor.dtype());
+                return Err(Error::checkpoint(path, got, format!("F32 and shape {shape:?}")));
+            }
+            values.extend(bytes_f32(tensor.data()));
+        }
+        Ok(Self { architecture, values })
+    }
+
+    /// Checks that the model fits a task.
+    ///
+    /// # Errors
+    /// [`Error::Checkpoint`] with both shapes.
+    pub fn check(&self, expected: &Architecture, path: &Path) -> Result<()> {
+        if self.architecture == *expected {
+            return Ok(());
+        }
+        let describe = |a: &Architecture| format!("a network for {}×{} px and {} actions", a.input[0], a.input[1], a.actions);
+        Err(Error::checkpoint(path, describe(&self.architecture), describe(expected)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn model() -> Model {
+        let architecture = Architecture { input: [44, 52], actions: 4 };
+        let mut rng = prf_envs::rng::stream(1, "network", 0);
+        Model::of(&QNetwork::new(architecture, tch::Device::Cpu, &mut rng).expect("network")).expect("model")
+    }
+
+    #[test]
+    fn a_model_is_read_back_to_the_bit() {
+        let dir = tempfile::tempdir().expect("dir");
+        let path = dir.path().join("model.safetensors");
+        model().write(&path).expect("write");
+        assert_eq!(Model::read(&path).expect("read"), model());
+        assert_eq!(fs::read_dir(dir.path()).expect("dir").count(), 1, "a temporary file was left");
+    }
+
+    #[test]
+    fn a_file_cut_short_is_an_error_that_names_it() {
+        let dir = tempfile::tempdir().expect("dir");
+        let path = dir.path().join("model.safetensors");
+        let bytes = model().to_bytes();
+        for length in [0, 4, 100, bytes.len() / 2, bytes.len() - 1] {
+            fs::write(&path, &bytes[..length]).expect("write");
+            let error = Model::read(&path).expect_err("cut short").to_string();
+            assert!(error.contains("model.safetensors") && error.contains("expected a whole"), "{error}");
+        }
+    }
+
+    #[test]
+    fn a_model_for_another_task_is_an_error_with_both_shapes() {
+        let expected = Architecture { input: [84, 84], actions: 3 };
+        let error = model().check(&expected, Path::new("m")).expect_err("other").to_string();
+        assert!(error.contains("44×52 px and 4 actions") && error.contains("84×84 px and 3 actions"), "{error}");
+    }
+}

@@ -1,0 +1,224 @@
+//! What a run is made of: the tables of a run's TOML file, with defaults and ranges.
+
+use prf_core::Error as ParamError;
+use prf_envs::{EnvConfig, RewardConfig, StateConfig, TaskConfig};
+use serde::{Deserialize, Serialize};
+
+/// Everything that decides a training run. The same `RunConfig` on the same machine with the same
+/// number of threads gives the same run, bit by bit.
+#[derive(Debug, Clone, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct RunConfig {
+    /// Seed of every random stream of the run.
+    #[serde(default)]
+    pub seed: u64,
+    /// `[env]`: the world.
+    pub env: EnvConfig,
+    /// `[reward]`: where the learner's reward comes from.
+    pub reward: RewardConfig,
+    /// `[state]`: what the network sees.
+    #[serde(default)]
+    pub state: StateConfig,
+    /// `[train]`: the learner.
+    pub train: TrainConfig,
+    /// `[evaluation]`: the greedy evaluations during the run.
+    #[serde(default)]
+    pub evaluation: EvaluationConfig,
+}
+
+/// `[train]`: the deep Q-network and its schedule. A *step* is one action in one environment.
+#[derive(Debug, Clone, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct TrainConfig {
+    /// Length of the run in steps, over all environments. Exactly one of `steps` and `episodes` is given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub steps: Option<u64>,
+    /// Length of the run in finished episodes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub episodes: Option<u64>,
+    /// Environments stepped together, with one batched forward pass, 1..=1024.
+    #[serde(default = "default_environments")]
+    pub environments: usize,
+    /// Transitions in one update, 1..=4096.
+    #[serde(default = "default_batch_size")]
+    pub batch_size: usize,
+    /// Steps that the replay remembers; each costs one byte a pixel.
+    #[serde(default = "default_replay_steps")]
+    pub replay_steps: usize,
+    /// Steps taken before the first update.
+    #[serde(default = "default_learning_starts")]
+    pub learning_starts: u64,
+    /// Steps taken for each update.
+    #[serde(default = "default_steps_per_update")]
+    pub steps_per_update: u64,
+    /// Updates after which the target network becomes a copy of the online network.
+    #[serde(default = "default_target_every_updates")]
+    pub target_every_updates: u64,
+    /// Adam's learning rate at the start, in (0, 1].
+    #[serde(default = "default_learning_rate")]
+    pub learning_rate: f64,
+    /// Adam's learning rate at the end of the run, reached linearly; the same as `learning_rate` when absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub final_learning_rate: Option<f64>,
+    /// Discount γ, in [0, 1).
+    #[serde(default = "default_gamma")]
+    pub gamma: f32,
+    /// Let the online network choose the action whose target value is bootstrapped (double DQN).
+    #[serde(default = "default_double")]
+    pub double: bool,
+    /// CPU threads of libtorch; 0 takes every core. Part of what makes a run repeatable.
+    #[serde(default)]
+    pub threads: usize,
+    /// Steps between checkpoints.
+    #[serde(default = "default_checkpoint_every_steps")]
+    pub checkpoint_every_steps: u64,
+    /// `[train.epsilon]`: the exploration schedule.
+    #[serde(default)]
+    pub epsilon: EpsilonConfig,
+}
+
+/// `[train.epsilon]`: ε falls linearly from `start` to `end` within `decay_steps` steps.
+#[derive(Debug, Clone, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct EpsilonConfig {
+    /// ε of the first step, in [0, 1]; 1 in the paper.
+    pub start: f32,
+    /// ε after `decay_steps`, in [0, 1].
+    pub end: f32,
+    /// Steps, over all environments, from `start` to `end`.
+    pub decay_steps: u64,
+}
+
+/// `[evaluation]`: the greedy policy, played on fixed seeds while the run goes on.
+#[derive(Debug, Clone, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct EvaluationConfig {
+    /// Training episodes between evaluations; 100 in the paper.
+    pub every_episodes: u64,
+    /// Episodes of one evaluation, 1..=10000.
+    pub episodes: usize,
+}
+
+impl Default for EpsilonConfig {
+    fn default() -> Self {
+        Self { start: 1.0, end: 0.05, decay_steps: 60_000 }
+    }
+}
+
+impl Default for EvaluationConfig {
+    fn default() -> Self {
+        Self { every_episodes: 100, episodes: 20 }
+    }
+}
+
+fn default_environments() -> usize {
+    16
+}
+fn default_batch_size() -> usize {
+    32
+}
+fn default_replay_steps() -> usize {
+    100_000
+}
+fn default_learning_starts() -> u64 {
+    2_000
+}
+fn default_steps_per_update() -> u64 {
+    4
+}
+fn default_target_every_updates() -> u64 {
+    1_000
+}
+fn default_learning_rate() -> f64 {
+    1e-4
+}
+fn default_gamma() -> f32 {
+    0.99
+}
+fn default_double() -> bool {
+    true
+}
+fn default_checkpoint_every_steps() -> u64 {
+    20_000
+}
+
+impl RunConfig {
+    /// The part that describes the task.
+    pub fn task(&self) -> TaskConfig {
+        TaskConfig { env: self.env.clone(), reward: self.reward.clone(), state: self.state.clone() }
+    }
+
+    /// Checks every range.
+    ///
+    /// # Errors
+    /// [`ParamError::InvalidParam`] with the dotted key of the first value that cannot be used.
+    pub fn validate(&self) -> Result<(), ParamError> {
+        self.task().validate()?;
+        self.train.validate()?;
+        self.evaluation.validate()
+    }
+}
+
+impl TrainConfig {
+    fn validate(&self) -> Result<(), ParamError> {
+        match (self.steps, self.episodes) {
+            (None, None) => return Err(invalid("train.steps", "nothing", "the run's length as `steps` or as `episodes`")),
+            (Some(_), Some(_)) => {
+                return Err(invalid("train.episodes", "`steps` and `episodes`", "only one of the two"));
+            }
+            (Some(steps), None) => within("train.steps", steps, 1, u64::MAX)?,
+            (None, Some(episodes)) => within("train.episodes", episodes, 1, u64::MAX)?,
+        }
+        within("train.environments", self.environments as u64, 1, 1024)?;
+        within("train.batch_size", self.batch_size as u64, 1, 4096)?;
+        let smallest = (self.environments * 4).max(self.batch_size) as u64;
+        within("train.replay_steps", self.replay_steps as u64, smallest, 100_000_000)?;
+        within("train.learning_starts", self.learning_starts, (self.environments * 2) as u64, u64::MAX)?;
+        within("train.steps_per_update", self.steps_per_update, 1, 1_000_000)?;
+        within("train.target_every_updates", self.target_every_updates, 1, u64::MAX)?;
+        within("train.threads", self.threads as u64, 0, 1024)?;
+        within("train.checkpoint_every_steps", self.checkpoint_every_steps, 1, u64::MAX)?;
+        learning_rate("train.learning_rate", self.learning_rate)?;
+        if let Some(rate) = self.final_learning_rate {
+            learning_rate("train.final_learning_rate", rate)?;
+        }
+        if !(0.0..1.0).contains(&self.gamma) {
+            return Err(invalid("train.gamma", self.gamma, "a discount from 0 up to, but not including, 1"));
+        }
+        self.epsilon.validate()
+    }
+}
+
+impl EpsilonConfig {
+    fn validate(&self) -> Result<(), ParamError> {
+        for (key, value) in [("train.epsilon.start", self.start), ("train.epsilon.end", self.end)] {
+            if !(0.0..=1.0).contains(&value) {
+                return Err(invalid(key, value, "a probability from 0 to 1"));
+            }
+        }
+        within("train.epsilon.decay_steps", self.decay_steps, 1, u64::MAX)
+    }
+}
+
+impl EvaluationConfig {
+    fn validate(&self) -> Result<(), ParamError> {
+        within("evaluation.every_episodes", self.every_episodes, 1, u64::MAX)?;
+        within("evaluation.episodes", self.episodes as u64, 1, 10_000)
+    }
+}
+
+fn learning_rate(key: &str, rate: f64) -> Result<(), ParamError> {
+    if rate > 0.0 && rate <= 1.0 { Ok(()) } else { Err(invalid(key, rate, "a number above 0 and at most 1")) }
+}
+
+fn within(key: &str, value: u64, least: u64, most: u64) -> Result<(), ParamError> {
+    if (least..=most).contains(&value) {
+        return Ok(());
+    }
+    let expected = if most == u64::MAX { format!("at least {least}") } else { format!("from {least} to {most}") };
+    Err(invalid(key, value, &expected))
+}
+
+fn invalid(key: &str, got: impl ToString, expected: &str) -> ParamError {
+    ParamError::InvalidParam { key: key.to_owned(), got: got.to_string(), expected: expected.to_owned() }
+}

@@ -1,0 +1,169 @@
+//! One update of the network: double DQN targets, Huber loss, Adam.
+
+use prf_envs::rng::ChaCha8Rng;
+use tch::{Device, Reduction, Tensor, no_grad};
+
+use crate::error::Result;
+use crate::network::{Architecture, QNetwork};
+use crate::optimizer::Adam;
+use crate::replay::Batch;
+
+/// The online network, its slow copy and the optimiser.
+#[derive(Debug)]
+pub struct Learner {
+    pub(crate) online: QNetwork,
+    pub(crate) target: QNetwork,
+    pub(crate) optimizer: Adam,
+    pub(crate) updates: u64,
+    settings: LearnerSettings,
+    device: Device,
+}
+
+/// What of the configuration concerns an update.
+#[derive(Debug, Clone, Copy)]
+pub struct LearnerSettings {
+    /// Discount γ.
+    pub gamma: f32,
+    /// Double DQN.
+    pub double: bool,
+    /// Updates between copies to the target network.
+    pub target_every_updates: u64,
+}
+
+impl Learner {
+    /// A learner with a newly drawn network.
+    pub fn new(
+        architecture: Architecture,
+        settings: LearnerSettings,
+        device: Device,
+        rng: &mut ChaCha8Rng,
+    ) -> Result<Self> {
+        let online = QNetwork::new(architecture, device, rng)?;
+        Self::from_network(online, settings, device)
+    }
+
+    fn from_network(online: QNetwork, settings: LearnerSettings, device: Device) -> Result<Self> {
+        let values = online.to_vec()?;
+        let target = QNetwork::from_flat(online.architecture().clone(), &values, device)?;
+        let optimizer = Adam::new(values.len(), device)?;
+        Ok(Self { online, target, optimizer, updates: 0, settings, device })
+    }
+
+    /// Learns from a batch and returns its loss: the mean Huber loss (δ = 1) of
+    /// `r + γ·Q_target(s′, a′) − Q(s, a)`, with `a′` the best action of the online network (double) or of the target.
+    pub fn update(&mut self, batch: &Batch, learning_rate: f64) -> Result<f32> {
+        let states = self.online.pictures(&batch.states, batch.len())?;
+        let next_states = self.online.pictures(&batch.next_states, batch.len())?;
+        let actions = Tensor::f_from_slice(&batch.actions)?.f_to_device(self.device)?.f_unsqueeze(1)?;
+        let targets = no_grad(|| self.targets(batch, &next_states))?;
+
+        let values = self.online.forward(&states)?.f_gather(1, &actions, false)?.f_squeeze_dim(1)?;
+        let loss = values.f_smooth_l1_loss(&targets, Reduction::Mean, 1.0)?;
+        let gradients = Tensor::f_run_backward(&[&loss], self.online.leaves(), false, false)?;
+        self.optimizer.step(self.online.flat_mut(), &gradients, learning_rate)?;
+
+        self.updates += 1;
+        if self.updates.is_multiple_of(self.settings.target_every_updates) {
+            self.target.copy_from(&self.online)?;
+        }
+        Ok(loss.f_double_value(&[])? as f32)
+    }
+
+    fn targets(&self, batch: &Batch, next_states: &Tensor) -> Result<Tensor> {
+        let next_values = self.target.forward(next_states)?;
+        let best = if self.settings.double {
+            let actions = self.online.forward(next_states)?.f_argmax(1, true)?;
+            next_values.f_gather(1, &actions, false)?.f_squeeze_dim(1)?
+        } else {
+            next_values.f_amax([1i64], false)?
+        };
+        let discounts: Vec<f32> = batch.continues.iter().map(|continues| continues * self.settings.gamma).collect();
+        let rewards = Tensor::f_from_slice(&batch.rewards)?.f_to_device(self.device)?;
+        let discounts = Tensor::f_from_slice(&discounts)?.f_to_device(self.device)?;
+        Ok(rewards.f_addcmul(&discounts, &best)?)
+    }
+}
+
+/// The action of the highest value of each row; the first of equals.
+pub fn greedy_actions(values: &[f32], actions: usize) -> impl Iterator<Item = usize> + '_ {
+    values.chunks_exact(actions).map(move |row| {
+        let best = |best: usize, at: usize| if row[at] > row[best] { at } else { best };
+        (0..actions).fold(0, best)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::network::tensor_to_vec;
+    use prf_envs::rng::{stream, unit_f32};
+
+    fn learner(double: bool) -> Learner {
+        let architecture = Architecture { input: [84, 84], actions: 3 };
+        let settings = LearnerSettings { gamma: 0.9, double, target_every_updates: 1000 };
+        Learner::new(architecture, settings, Device::Cpu, &mut stream(3, "network", 0)).expect("learner")
+    }
+
+    fn batch() -> Batch {
+        let mut rng = stream(5, "test", 0);
+        let mut pictures = || (0..4 * 84 * 84).map(|_| (unit_f32(&mut rng) * 255.0) as u8).collect::<Vec<u8>>();
+        Batch {
+            states: pictures(),
+            next_states: pictures(),
+            actions: vec![0, 1, 2, 1],
+            rewards: vec![1.0, -0.5, 0.0, 20.0],
+            continues: vec![1.0, 1.0, 0.0, 1.0],
+        }
+    }
+
+    #[test]
+    fn parameters_are_those_of_the_published_network() {
+        let architecture = Architecture { input: [84, 84], actions: 3 };
+        let count: i64 = architecture.parameters().iter().map(|(_, shape)| shape.iter().product::<i64>()).sum();
+        // 32·(8·8+1) + 64·(32·16+1) + 64·(64·9+1) + 512·(3136+1) + 3·(512+1)
+        assert_eq!(count, 2_080 + 32_832 + 36_928 + 1_606_144 + 1_539);
+        assert_eq!(Architecture::smallest_input(), 36);
+    }
+
+    #[test]
+    fn loss_is_the_huber_loss_of_the_double_dqn_target() {
+        for double in [false, true] {
+            let mut learner = learner(double);
+            let batch = batch();
+            // A target network that differs, so that choosing and valuing the action can be told apart.
+            let other = QNetwork::new(learner.online.architecture().clone(), Device::Cpu, &mut stream(9, "network", 0));
+            learner.target = other.expect("network");
+            let now = learner.online.q_values(&batch.states, 4).expect("values");
+            let online = learner.online.q_values(&batch.next_states, 4).expect("values");
+            let pictures = learner.online.pictures(&batch.next_states, 4).expect("pictures");
+            let slow = tensor_to_vec(&learner.target.forward(&pictures).expect("forward")).expect("values");
+            let chooser = if double { &online } else { &slow };
+            let mut expected = 0.0;
+            for (row, best) in greedy_actions(chooser, 3).enumerate() {
+                let target = batch.rewards[row] + 0.9 * batch.continues[row] * slow[row * 3 + best];
+                let error = (target - now[row * 3 + batch.actions[row] as usize]).abs();
+                expected += if error < 1.0 { 0.5 * error * error } else { error - 0.5 } / 4.0;
+            }
+            let loss = learner.update(&batch, 1e-4).expect("update");
+            assert!((loss - expected).abs() < 1e-4, "loss {loss}, by hand {expected}");
+        }
+    }
+
+    #[test]
+    fn updates_fit_the_batch_and_the_target_follows_when_due() {
+        let mut learner = learner(true);
+        learner.settings.target_every_updates = 30;
+        let batch = Batch { continues: vec![0.0; 4], ..batch() };
+        let before = learner.target.to_vec().expect("values");
+        let losses: Vec<f32> = (0..29).map(|_| learner.update(&batch, 1e-3).expect("update")).collect();
+        assert!(losses[28] < 0.5 * losses[0], "the loss went from {} to {}", losses[0], losses[28]);
+        assert_eq!(learner.target.to_vec().expect("values"), before);
+        learner.update(&batch, 1e-3).expect("update");
+        assert_eq!(learner.target.to_vec().expect("values"), learner.online.to_vec().expect("values"));
+    }
+
+    #[test]
+    fn greedy_takes_the_first_of_the_highest() {
+        assert_eq!(greedy_actions(&[0.0, 2.0, 1.0, 5.0, 5.0, 1.0], 3).collect::<Vec<_>>(), [1, 0]);
+    }
+}

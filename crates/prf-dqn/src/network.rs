@@ -1,0 +1,154 @@
+//! The Q-network of Mnih et al. (Nature, 2015) on one picture, with all parameters in one flat tensor.
+
+use prf_envs::rng::ChaCha8Rng;
+use tch::{Device, Kind, Tensor, no_grad};
+
+use crate::error::Result;
+
+/// One convolution: output channels, kernel side, stride.
+const CONVOLUTIONS: [(i64, i64, i64); 3] = [(32, 8, 4), (64, 4, 2), (64, 3, 1)];
+/// Units of the hidden fully connected layer.
+const HIDDEN_UNITS: i64 = 512;
+
+/// Name and shape of each parameter, in the order of the flat tensor.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Architecture {
+    /// Height and width of the input, in pixels.
+    pub input: [i64; 2],
+    /// Number of actions, the width of the output.
+    pub actions: i64,
+}
+
+impl Architecture {
+    /// Names and shapes of weights and biases, from the input to the output.
+    pub fn parameters(&self) -> Vec<(String, Vec<i64>)> {
+        let mut parameters = Vec::new();
+        let mut push = |layer: &str, shape: Vec<i64>| {
+            let outputs = shape[0];
+            parameters.push((format!("{layer}.weight"), shape));
+            parameters.push((format!("{layer}.bias"), vec![outputs]));
+        };
+        let (mut channels, [mut height, mut width]) = (1, self.input);
+        for (index, (outputs, kernel, stride)) in CONVOLUTIONS.into_iter().enumerate() {
+            push(&format!("conv{}", index + 1), vec![outputs, channels, kernel, kernel]);
+            (height, width) = ((height - kernel) / stride + 1, (width - kernel) / stride + 1);
+            channels = outputs;
+        }
+        push("hidden", vec![HIDDEN_UNITS, channels * height * width]);
+        push("output", vec![self.actions, HIDDEN_UNITS]);
+        parameters
+    }
+
+    /// The smallest height and width that the convolutions accept, in pixels.
+    pub fn smallest_input() -> i64 {
+        CONVOLUTIONS.into_iter().rev().fold(1, |side, (_, kernel, stride)| (side - 1) * stride + kernel)
+    }
+}
+
+/// A Q-network: pictures in, one value an action out.
+#[derive(Debug)]
+pub struct QNetwork {
+    architecture: Architecture,
+    flat: Tensor,
+    /// Views of `flat`, leaves of the autograd graph.
+    leaves: Vec<Tensor>,
+}
+
+impl QNetwork {
+    /// A network whose weights are uniform in ±√(6/fan-in) (He et al., 2015), drawn from `rng`, and whose biases are 0.
+    ///
+    /// PyTorch's default is 2.4 times smaller and lets the trace of a ball of four pixels fade from layer to layer.
+    pub fn new(architecture: Architecture, device: Device, rng: &mut ChaCha8Rng) -> Result<Self> {
+        let mut values = Vec::new();
+        for (name, shape) in architecture.parameters() {
+            let count = shape.iter().product::<i64>();
+            let fan_in = shape[1..].iter().product::<i64>();
+            let bound = if name.ends_with(".weight") { (6.0 / fan_in as f32).sqrt() } else { 0.0 };
+            values.extend((0..count).map(|_| bound * (2.0 * prf_envs::rng::unit_f32(rng) - 1.0)));
+        }
+        Self::from_flat(architecture, &values, device)
+    }
+
+    /// A network with the given parameters, in the order of [`Architecture::parameters`].
+    pub fn from_flat(architecture: Architecture, values: &[f32], device: Device) -> Result<Self> {
+        let flat = Tensor::f_from_slice(values)?.f_to_device(device)?;
+        let mut leaves = Vec::new();
+        let mut offset = 0;
+        for (_, shape) in architecture.parameters() {
+            let count = shape.iter().product::<i64>();
+            let leaf = flat.f_narrow(0, offset, count)?.f_view(&shape[..])?.f_detach()?.f_set_requires_grad(true)?;
+            leaves.push(leaf);
+            offset += count;
+        }
+        debug_assert_eq!(offset, values.len() as i64);
+        Ok(Self { architecture, flat, leaves })
+    }
+
+    /// Q-values of a batch: pictures as f32 in [0, 1], shape [n, 1, h, w], to values of shape [n, actions].
+    pub fn forward(&self, pictures: &Tensor) -> Result<Tensor> {
+        let mut x = pictures.shallow_clone();
+        let mut leaves = self.leaves.chunks_exact(2);
+        for ((_, _, stride), parameters) in CONVOLUTIONS.into_iter().zip(&mut leaves) {
+            let [weight, bias] = parameters else { unreachable!("chunks of two") };
+            x = x.f_conv2d(weight, Some(bias), [stride; 2], [0; 2], [1; 2], 1)?.f_relu_()?;
+        }
+        x = x.f_flatten(1, -1)?;
+        let [hidden_weight, hidden_bias, output_weight, output_bias] = &self.leaves[CONVOLUTIONS.len() * 2..] else {
+            unreachable!("two fully connected layers")
+        };
+        x = x.f_linear(hidden_weight, Some(hidden_bias))?.f_relu_()?;
+        Ok(x.f_linear(output_weight, Some(output_bias))?)
+    }
+
+    /// Q-values of `count` pictures of h × w bytes each: count × actions values, row by row, outside the autograd graph.
+    pub fn q_values(&self, bytes: &[u8], count: usize) -> Result<Vec<f32>> {
+        no_grad(|| tensor_to_vec(&self.forward(&self.pictures(bytes, count)?)?))
+    }
+
+    /// `count` pictures of h × w bytes each as the network's input, f32 in [0, 1], shape [count, 1, h, w].
+    pub fn pictures(&self, bytes: &[u8], count: usize) -> Result<Tensor> {
+        let [height, width] = self.architecture.input;
+        let bytes = Tensor::f_from_slice(bytes)?.f_to_device(self.device())?.f_view([count as i64, 1, height, width])?;
+        Ok(bytes.f_to_kind(Kind::Float)?.f_mul_scalar_(1.0 / 255.0)?)
+    }
+
+    /// Takes over the parameters of another network of the same architecture.
+    pub fn copy_from(&mut self, other: &Self) -> Result<()> {
+        no_grad(|| self.flat.f_copy_(&other.flat))?;
+        Ok(())
+    }
+
+    /// Shape of the network.
+    pub fn architecture(&self) -> &Architecture {
+        &self.architecture
+    }
+
+    /// Where the parameters lie.
+    pub fn device(&self) -> Device {
+        self.flat.device()
+    }
+
+    /// The leaves to differentiate for, in the order of the flat tensor.
+    pub fn leaves(&self) -> &[Tensor] {
+        &self.leaves
+    }
+
+    /// The parameters that an optimiser changes, shape [n].
+    pub fn flat_mut(&mut self) -> &mut Tensor {
+        &mut self.flat
+    }
+
+    /// A copy of the parameters, in the order of [`Architecture::parameters`].
+    pub fn to_vec(&self) -> Result<Vec<f32>> {
+        tensor_to_vec(&self.flat)
+    }
+}
+
+/// Copies a tensor's values to the host.
+pub(crate) fn tensor_to_vec(tensor: &Tensor) -> Result<Vec<f32>> {
+    let flat = tensor.f_detach()?.f_to_device(Device::Cpu)?.f_to_kind(Kind::Float)?.f_contiguous()?;
+    let mut values = vec![0.0; flat.numel()];
+    let count = values.len();
+    flat.f_copy_data(&mut values, count)?;
+    Ok(values)
+}

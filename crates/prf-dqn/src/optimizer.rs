@@ -1,0 +1,147 @@
+//! Adam (Kingma and Ba, 2014) over a network's flat parameters, with its moments in the open so that they can be saved.
+
+use tch::{Device, Kind, Tensor, no_grad};
+
+use crate::error::Result;
+use crate::network::tensor_to_vec;
+
+mod fused;
+
+const BETA1: f64 = 0.9;
+const BETA2: f64 = 0.999;
+const EPSILON: f64 = 1e-8;
+
+/// Adam's state: both moments, as flat as the parameters, and the number of steps taken.
+#[derive(Debug)]
+pub struct Adam {
+    first: Tensor,
+    second: Tensor,
+    steps: u64,
+}
+
+/// The numbers of one step that are the same for every parameter.
+#[derive(Debug, Clone, Copy)]
+struct StepSize {
+    /// Learning rate divided by the first moment's bias correction.
+    rate: f64,
+    /// √ of the second moment's bias correction.
+    second_correction: f64,
+}
+
+impl Adam {
+    /// Adam that has taken no step, for `count` parameters.
+    pub fn new(count: usize, device: Device) -> Result<Self> {
+        let zeros = || Tensor::f_zeros([count as i64], (Kind::Float, device));
+        Ok(Self { first: zeros()?, second: zeros()?, steps: 0 })
+    }
+
+    /// Adam that goes on from saved moments.
+    pub fn restore(first: &[f32], second: &[f32], steps: u64, device: Device) -> Result<Self> {
+        let load = |values| Tensor::f_from_slice(values)?.f_to_device(device);
+        Ok(Self { first: load(first)?, second: load(second)?, steps })
+    }
+
+    /// First moments, second moments and the number of steps taken.
+    pub fn to_parts(&self) -> Result<(Vec<f32>, Vec<f32>, u64)> {
+        Ok((tensor_to_vec(&self.first)?, tensor_to_vec(&self.second)?, self.steps))
+    }
+
+    /// One step: `parameters` (flat, shape [n]) move against `gradients`, which together have n elements in the same order.
+    pub fn step(&mut self, parameters: &mut Tensor, gradients: &[Tensor], learning_rate: f64) -> Result<()> {
+        self.steps += 1;
+        let size = StepSize {
+            rate: learning_rate / (1.0 - BETA1.powf(self.steps as f64)),
+            second_correction: (1.0 - BETA2.powf(self.steps as f64)).sqrt(),
+        };
+        if parameters.device() == Device::Cpu {
+            fused::step(parameters, &mut self.first, &mut self.second, gradients, size)
+        } else {
+            no_grad(|| self.step_by_tensors(parameters, gradients, size))
+        }
+    }
+
+    fn step_by_tensors(&mut self, parameters: &mut Tensor, gradients: &[Tensor], size: StepSize) -> Result<()> {
+        let flat: Vec<Tensor> = gradients.iter().map(|gradient| gradient.f_flatten(0, -1)).collect::<Result<_, _>>()?;
+        let gradient = Tensor::f_cat(&flat, 0)?;
+        let _ = self.first.f_lerp_(&gradient, 1.0 - BETA1)?;
+        let _ = self.second.f_mul_scalar_(BETA2)?.f_addcmul_(&gradient, &(&gradient * (1.0 - BETA2)))?;
+        let denominator = self.second.f_sqrt()?.f_div_scalar_(size.second_correction)?.f_add_scalar_(EPSILON)?;
+        let _ = parameters.f_sub_(&(self.first.f_div(&denominator)?.f_mul_scalar_(size.rate)?))?;
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parameters_after(steps: &[(Vec<f32>, f64)], fused: bool) -> (Vec<f32>, Adam) {
+        let count = steps[0].0.len();
+        let mut parameters = Tensor::from_slice(&vec![1.0f32; count]);
+        let mut adam = Adam::new(count, Device::Cpu).expect("adam");
+        for (gradient, rate) in steps {
+            let (head, tail) = gradient.split_at(count / 3);
+            let parts = [Tensor::from_slice(head), Tensor::from_slice(tail)];
+            if fused {
+                adam.step(&mut parameters, &parts, *rate).expect("step");
+            } else {
+                adam.steps += 1;
+                let size = StepSize {
+                    rate: rate / (1.0 - BETA1.powf(adam.steps as f64)),
+                    second_correction: (1.0 - BETA2.powf(adam.steps as f64)).sqrt(),
+                };
+                adam.step_by_tensors(&mut parameters, &parts, size).expect("step");
+            }
+        }
+        (tensor_to_vec(&parameters).expect("values"), adam)
+    }
+
+    fn gradients(count: usize, seed: u64) -> Vec<f32> {
+        let mut rng = prf_envs::rng::stream(seed, "test-gradient", 0);
+        (0..count).map(|_| prf_envs::rng::unit_f32(&mut rng) - 0.5).collect()
+    }
+
+    #[test]
+    fn first_step_moves_every_parameter_by_the_rate_against_its_gradient() {
+        // m̂ = g and v̂ = g², so the step is rate · g / (|g| + ε).
+        let (values, _) = parameters_after(&[(vec![0.5, -2.0, 1e-3], 0.01)], true);
+        for (value, expected) in values.iter().zip([0.99, 1.01, 0.99]) {
+            assert!((value - expected).abs() < 1e-6, "{value} should be {expected}");
+        }
+    }
+
+    #[test]
+    fn second_step_equals_the_hand_computed_one() {
+        // g₁ = 1, g₂ = −1: m = 0.9·0.1 − 0.1 = −0.01, v = 0.999·0.001 + 0.001 = 0.001999,
+        // m̂ = −0.01/0.19, v̂ = 0.001999/0.001999 = 1; θ = 1 − 0.1 + 0.1·0.01/0.19.
+        let (values, adam) = parameters_after(&[(vec![1.0; 3], 0.1), (vec![-1.0; 3], 0.1)], true);
+        let expected = 0.9 + 0.1 * 0.01 / 0.19;
+        assert!(values.iter().all(|value| (value - expected).abs() < 1e-6), "{values:?} should be {expected}");
+        assert_eq!(adam.steps, 2);
+    }
+
+    #[test]
+    fn fused_step_agrees_with_tensor_operations() {
+        // Large enough that several threads share the work, and no multiple of anything.
+        let count = 300_007;
+        let steps: Vec<_> = (0..5).map(|step| (gradients(count, step), 1e-3)).collect();
+        let (fused, _) = parameters_after(&steps, true);
+        let (plain, _) = parameters_after(&steps, false);
+        let worst = fused.iter().zip(&plain).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+        assert!(worst < 1e-6, "largest difference {worst}");
+    }
+
+    #[test]
+    fn restored_moments_continue_to_the_same_bits() {
+        let steps: Vec<_> = (0..4).map(|step| (gradients(1000, step), 1e-3)).collect();
+        let (whole, _) = parameters_after(&steps, true);
+        let (half, adam) = parameters_after(&steps[..2], true);
+        let (first, second, count) = adam.to_parts().expect("parts");
+        let mut adam = Adam::restore(&first, &second, count, Device::Cpu).expect("restore");
+        let mut parameters = Tensor::from_slice(&half);
+        for (gradient, rate) in &steps[2..] {
+            adam.step(&mut parameters, &[Tensor::from_slice(gradient)], *rate).expect("step");
+        }
+        assert_eq!(tensor_to_vec(&parameters).expect("values"), whole);
+    }
+}

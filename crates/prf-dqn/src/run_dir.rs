@@ -1,0 +1,103 @@
+//! The directory of a run and what lies where in it.
+
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use prf_core::Frame;
+use serde::Serialize;
+
+use crate::config::RunConfig;
+use crate::error::{Error, Result};
+use crate::record::TimeShares;
+
+/// A run's directory: `config.toml`, `goal.png`, `manifest.json`, `metrics.jsonl`, `checkpoints/`, `replay/`.
+#[derive(Debug, Clone)]
+pub struct RunDir {
+    path: PathBuf,
+}
+
+/// Where a run came from and where its time went: `manifest.json`.
+#[derive(Debug, Clone, Serialize)]
+pub struct Manifest {
+    /// Version of PRF.
+    pub prf_version: &'static str,
+    /// Version of libtorch.
+    pub libtorch_version: &'static str,
+    /// Seed of the run.
+    pub seed: u64,
+    /// Device of the network.
+    pub device: String,
+    /// Threads of libtorch.
+    pub threads: i32,
+    /// Steps taken so far.
+    pub steps: u64,
+    /// Whether the run came to its end.
+    pub finished: bool,
+    /// Where the time went, in seconds.
+    pub time: TimeShares,
+}
+
+impl RunDir {
+    /// Begins a run directory: makes it, unless something is there already, and writes the resolved configuration and
+    /// the goal's picture into it, so that the run depends on no other file.
+    ///
+    /// # Errors
+    /// [`Error::Io`] when the directory is there and not empty, or cannot be written.
+    pub fn create(path: &Path, config: &RunConfig, goal: Option<&Frame>) -> Result<Self> {
+        let run = Self { path: path.to_owned() };
+        if fs::read_dir(path).is_ok_and(|mut entries| entries.next().is_some()) || path.is_file() {
+            let source = std::io::Error::from(std::io::ErrorKind::AlreadyExists);
+            return Err(Error::Io { action: "make", path: path.to_owned(), source });
+        }
+        fs::create_dir_all(path).map_err(Error::io("make", path))?;
+        let mut config = config.clone();
+        if let Some(goal) = goal {
+            prf_core::io::write_frame(goal.view(), run.path.join("goal.png"))?;
+            config.reward.goal = Some("goal.png".into());
+        }
+        let text = toml::to_string(&config).expect("a configuration is plain tables");
+        run.write_whole("config.toml", text.as_bytes())?;
+        Ok(run)
+    }
+
+    /// The run directory at `path`, made earlier.
+    pub fn at(path: &Path) -> Self {
+        Self { path: path.to_owned() }
+    }
+
+    /// The directory itself.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The resolved configuration.
+    pub fn config_path(&self) -> PathBuf {
+        self.path.join("config.toml")
+    }
+
+    /// The records of the run, one JSON object a line.
+    pub fn metrics_path(&self) -> PathBuf {
+        self.path.join("metrics.jsonl")
+    }
+
+    /// Writes `manifest.json`.
+    ///
+    /// # Errors
+    /// [`Error::Io`] when it cannot be written.
+    pub fn write_manifest(&self, manifest: &Manifest) -> Result<()> {
+        let text = serde_json::to_vec_pretty(manifest).expect("a manifest holds only numbers and strings");
+        self.write_whole("manifest.json", &text)
+    }
+
+    fn write_whole(&self, name: &str, bytes: &[u8]) -> Result<()> {
+        let path = self.path.join(name);
+        let write = || {
+            let mut file = tempfile::NamedTempFile::new_in(&self.path)?;
+            file.write_all(bytes)?;
+            file.as_file().sync_all()?;
+            file.persist(&path).map_err(|error| error.error)
+        };
+        write().map(drop).map_err(Error::io("write", &path))
+    }
+}

@@ -1,0 +1,318 @@
+//! The training loop: act, step the worlds, learn, evaluate, save.
+
+use std::time::Instant;
+
+use prf_core::Frame;
+use prf_envs::rng::{ChaCha8Rng, below, stream, unit_f32};
+use prf_envs::{Status, Task};
+
+use crate::checkpoint::{CheckpointStore, Model, Segment};
+use crate::config::RunConfig;
+use crate::error::{Error, Result};
+use crate::evaluate::{Spread, episode_seeds, play_greedily};
+use crate::learner::{Learner, LearnerSettings, greedy_actions};
+use crate::network::Architecture;
+use crate::record::{EvaluationRecord, Event, JsonlRecorder, Progress, Recorder, TimeShares, TrainRecord, timed};
+use crate::replay::{Batch, Outcome, Replay};
+use crate::run_dir::RunDir;
+use crate::schedule;
+
+mod lane;
+mod state;
+
+use lane::{Lane, Window};
+use state::Counters;
+
+/// How [`Trainer::run`] ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ending {
+    /// The run is complete.
+    Finished,
+    /// It was asked to stop, and saved itself.
+    Interrupted,
+}
+
+/// A run in progress.
+pub struct Trainer {
+    config: RunConfig,
+    lanes: Vec<Lane>,
+    evaluation_tasks: Vec<Task>,
+    evaluation_seeds: Vec<u64>,
+    learner: Learner,
+    replay: Replay,
+    exploration: ChaCha8Rng,
+    sampling: ChaCha8Rng,
+    counters: Counters,
+    metrics: JsonlRecorder,
+    checkpoints: CheckpointStore,
+    /// The replay on disk, as of the last checkpoint.
+    segments: Vec<Segment>,
+    /// Reused by every step and update.
+    states: Vec<u8>,
+    batch: Batch,
+    time: TimeShares,
+    started: Instant,
+    window_started: Instant,
+}
+
+/// The network that a task needs.
+///
+/// # Errors
+/// When the pictures of the task are too small for the convolutions.
+pub fn architecture(task: &Task) -> Result<Architecture> {
+    let spec = task.spec();
+    let least = Architecture::smallest_input() as usize;
+    if spec.width < least || spec.height < least {
+        return Err(Error::Config(prf_core::Error::InvalidParam {
+            key: "env.name".to_owned(),
+            got: format!("a world of {}×{} px", spec.width, spec.height),
+            expected: format!("at least {least}×{least} px for the network"),
+        }));
+    }
+    Ok(Architecture { input: [spec.height as i64, spec.width as i64], actions: spec.actions.len() as i64 })
+}
+
+/// Sets libtorch's threads as the configuration asks and gives their number.
+pub fn set_threads(config: &RunConfig) -> i32 {
+    if config.train.threads > 0 {
+        tch::set_num_threads(config.train.threads as i32);
+    }
+    tch::get_num_threads()
+}
+
+impl Trainer {
+    /// A run in `run`: at its beginning, or where its newest checkpoint left it.
+    ///
+    /// # Errors
+    /// When the task cannot be built, the run directory cannot be written or the checkpoint is damaged.
+    pub fn open(config: RunConfig, goal: Option<&Frame>, run: &RunDir, device: tch::Device) -> Result<Self> {
+        let mut trainer = Self::new(config, goal, run, device)?;
+        trainer.resume(run)?;
+        Ok(trainer)
+    }
+
+    fn new(config: RunConfig, goal: Option<&Frame>, run: &RunDir, device: tch::Device) -> Result<Self> {
+        let seed = config.seed;
+        let task = config.task();
+        let make = || Ok::<_, Error>(Task::new(&task, goal)?);
+        let lanes = (0..config.train.environments)
+            .map(|index| Ok(Lane::new(make()?, stream(seed, "episodes", index as u64))))
+            .collect::<Result<Vec<_>>>()?;
+        let evaluation_tasks = (0..config.evaluation.episodes).map(|_| make()).collect::<Result<Vec<_>>>()?;
+        let architecture = architecture(&evaluation_tasks[0])?;
+        let settings = LearnerSettings {
+            gamma: config.train.gamma,
+            double: config.train.double,
+            target_every_updates: config.train.target_every_updates,
+        };
+        let frame_len = (architecture.input[0] * architecture.input[1]) as usize;
+        Ok(Self {
+            evaluation_seeds: episode_seeds(0, "evaluation", config.evaluation.episodes),
+            learner: Learner::new(architecture, settings, device, &mut stream(seed, "network", 0))?,
+            replay: Replay::new(config.train.replay_steps, lanes.len(), frame_len),
+            exploration: stream(seed, "exploration", 0),
+            sampling: stream(seed, "replay", 0),
+            counters: Counters::default(),
+            metrics: JsonlRecorder::open(&run.metrics_path())?,
+            checkpoints: CheckpointStore::open(run.path())?,
+            segments: Vec::new(),
+            states: Vec::new(),
+            batch: Batch::default(),
+            time: TimeShares::default(),
+            started: Instant::now(),
+            window_started: Instant::now(),
+            lanes,
+            evaluation_tasks,
+            config,
+        })
+    }
+
+    /// Trains to the end of the run, or until `stop` says so; then everything is saved, and [`Trainer::resume`] goes on.
+    ///
+    /// # Errors
+    /// When something cannot be written; what was written before stays.
+    pub fn run(&mut self, recorder: &mut dyn Recorder, stop: &dyn Fn() -> bool) -> Result<Ending> {
+        (self.started, self.window_started) = (Instant::now(), Instant::now());
+        while !self.is_finished() {
+            if stop() {
+                self.save(recorder)?;
+                return Ok(Ending::Interrupted);
+            }
+            self.step_worlds()?;
+            self.learn()?;
+            recorder.record(&Event::Progress(self.progress()))?;
+            if self.counters.episodes / self.config.evaluation.every_episodes > self.counters.evaluations_due {
+                self.evaluate(recorder)?;
+            }
+            if self.counters.steps / self.config.train.checkpoint_every_steps > self.counters.checkpoints_due {
+                self.save(recorder)?;
+            }
+        }
+        if self.counters.evaluated_at != Some(self.counters.steps) {
+            self.evaluate(recorder)?;
+        }
+        self.save(recorder)?;
+        Ok(Ending::Finished)
+    }
+
+    fn is_finished(&self) -> bool {
+        self.done() >= 1.0
+    }
+
+    fn done(&self) -> f64 {
+        schedule::progress(&self.config.train, self.counters.steps, self.counters.episodes)
+    }
+
+    fn epsilon(&self) -> f32 {
+        schedule::epsilon(&self.config.train.epsilon, self.counters.steps)
+    }
+
+    /// One ε-greedy step of every environment.
+    fn step_worlds(&mut self) -> Result<()> {
+        let actions = self.choose_actions()?;
+        for (index, (lane, action)) in self.lanes.iter_mut().zip(actions).enumerate() {
+            // The state acted in is overwritten by the step, so it goes into the replay from the batch made of it.
+            let step = timed(&mut self.time.worlds_s, || lane.task.step(action))?;
+            let state = &self.states[index * self.states.len() / self.config.train.environments..];
+            let state = &state[..lane.task.observation().len()];
+            let outcome = match step.status {
+                Status::Running => Outcome::Continued,
+                Status::Terminated => Outcome::Terminated,
+                Status::Truncated => Outcome::Truncated,
+            };
+            timed(&mut self.time.replay_s, || {
+                self.replay.push(index, state, action as u8, step.reward, outcome);
+                if outcome == Outcome::Truncated {
+                    self.replay.push_last_state(index, lane.task.observation());
+                }
+            });
+            self.counters.steps += 1;
+            lane.episode.add(&step);
+            if step.status.is_over() {
+                self.counters.finish(lane.episode);
+                timed(&mut self.time.worlds_s, || lane.begin_episode());
+            }
+        }
+        Ok(())
+    }
+
+    fn choose_actions(&mut self) -> Result<Vec<usize>> {
+        self.states.clear();
+        for lane in &self.lanes {
+            self.states.extend_from_slice(lane.task.observation());
+        }
+        let values = timed(&mut self.time.acting_s, || self.learner.online.q_values(&self.states, self.lanes.len()))?;
+        let actions = values.len() / self.lanes.len();
+        let epsilon = self.epsilon();
+        let explore = |greedy| {
+            let random = unit_f32(&mut self.exploration) < epsilon;
+            if random { below(&mut self.exploration, actions) } else { greedy }
+        };
+        Ok(greedy_actions(&values, actions).map(explore).collect())
+    }
+
+    /// As many updates as the steps taken so far allow.
+    fn learn(&mut self) -> Result<()> {
+        let train = &self.config.train;
+        let due = self.counters.steps.saturating_sub(train.learning_starts) / train.steps_per_update;
+        let rate = schedule::learning_rate(train, self.done());
+        while self.learner.updates < due {
+            timed(&mut self.time.replay_s, || {
+                self.replay.sample(self.config.train.batch_size, &mut self.sampling, &mut self.batch);
+            });
+            let loss = timed(&mut self.time.updates_s, || self.learner.update(&self.batch, rate))?;
+            self.counters.window.add_loss(loss);
+        }
+        Ok(())
+    }
+
+    /// Records the training episodes since the last evaluation, then plays the greedy policy.
+    fn evaluate(&mut self, recorder: &mut dyn Recorder) -> Result<()> {
+        self.tell(recorder, Event::Train(self.train_record()))?;
+        self.counters.window = Window::default();
+
+        let network = &self.learner.online;
+        let episodes = timed(&mut self.time.evaluation_s, || {
+            play_greedily(&mut self.evaluation_tasks, &self.evaluation_seeds, |states, count| {
+                network.q_values(states, count)
+            })
+        })?;
+        let score = Spread::of(episodes.iter().map(|episode| f64::from(episode.score)));
+        self.tell(
+            recorder,
+            Event::Evaluation(EvaluationRecord {
+                step: self.counters.steps,
+                episode: self.counters.episodes,
+                episodes: episodes.len(),
+                mean_score: score.mean,
+                std_score: score.std,
+                mean_reward: Spread::of(episodes.iter().map(|episode| episode.reward)).mean,
+                mean_steps: Spread::of(episodes.iter().map(|episode| f64::from(episode.steps))).mean,
+                time_s: self.elapsed_s(),
+            }),
+        )?;
+        if self.counters.best_score.is_none_or(|best| score.mean > best) {
+            self.counters.best_score = Some(score.mean);
+            self.checkpoints.write_best(&Model::of(&self.learner.online)?)?;
+        }
+        self.counters.last_score = Some(score.mean);
+        self.counters.evaluated_at = Some(self.counters.steps);
+        self.counters.evaluations_due = self.counters.episodes / self.config.evaluation.every_episodes;
+        self.window_started = Instant::now();
+        Ok(())
+    }
+
+    fn tell(&mut self, recorder: &mut dyn Recorder, event: Event) -> Result<()> {
+        self.metrics.record(&event)?;
+        recorder.record(&event)
+    }
+
+    fn elapsed_s(&self) -> f64 {
+        self.counters.elapsed_s + self.started.elapsed().as_secs_f64()
+    }
+
+    fn train_record(&self) -> TrainRecord {
+        let (counters, window) = (&self.counters, &self.counters.window);
+        let seconds = self.window_started.elapsed().as_secs_f64();
+        TrainRecord {
+            step: counters.steps,
+            episode: counters.episodes,
+            update: self.learner.updates,
+            mean_score: window.mean_score(),
+            mean_reward: window.mean_reward(),
+            mean_steps: window.mean_steps(),
+            mean_loss: window.mean_loss(),
+            epsilon: self.epsilon(),
+            time_s: self.elapsed_s(),
+            steps_per_s: window.steps as f64 / seconds.max(f64::EPSILON),
+        }
+    }
+
+    fn progress(&self) -> Progress {
+        let window = &self.counters.window;
+        Progress {
+            steps: self.counters.steps,
+            episodes: self.counters.episodes,
+            done: self.done(),
+            epsilon: self.epsilon(),
+            recent_score: window.mean_score(),
+            recent_reward: window.mean_reward(),
+            evaluation_score: self.counters.last_score,
+        }
+    }
+
+    /// Steps taken so far, over all environments.
+    pub fn steps(&self) -> u64 {
+        self.counters.steps
+    }
+
+    /// Mean score of the last greedy evaluation.
+    pub fn last_score(&self) -> Option<f64> {
+        self.counters.last_score
+    }
+
+    /// Where the time went since this process began to train.
+    pub fn time(&self) -> TimeShares {
+        self.time
+    }
+}

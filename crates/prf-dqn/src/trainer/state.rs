@@ -1,0 +1,153 @@
+//! What of a run goes into a checkpoint, and how it comes back.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use prf_envs::rng;
+use serde::{Deserialize, Serialize};
+
+use super::Trainer;
+use super::lane::Window;
+use crate::checkpoint::{Checkpoint, CheckpointStore, Model, Segment};
+use crate::error::{Error, Result};
+use crate::evaluate::Episode;
+use crate::optimizer::Adam;
+use crate::record::{Event, Recorder, timed};
+use crate::run_dir::RunDir;
+
+/// Everything that is counted.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub(super) struct Counters {
+    pub(super) steps: u64,
+    pub(super) episodes: u64,
+    /// Evaluations and checkpoints that were due so far by the configuration's intervals.
+    pub(super) evaluations_due: u64,
+    pub(super) checkpoints_due: u64,
+    /// Steps at the last evaluation.
+    pub(super) evaluated_at: Option<u64>,
+    pub(super) last_score: Option<f64>,
+    pub(super) best_score: Option<f64>,
+    pub(super) window: Window,
+    /// Training time before this process, in seconds.
+    pub(super) elapsed_s: f64,
+}
+
+/// The JSON part of a checkpoint.
+#[derive(Debug, Serialize, Deserialize)]
+struct State {
+    config: String,
+    counters: Counters,
+    updates: u64,
+    adam_steps: u64,
+    episodes: Vec<Episode>,
+    metrics_bytes: u64,
+    segments: Vec<Segment>,
+}
+
+impl Counters {
+    pub(super) fn finish(&mut self, episode: Episode) {
+        self.episodes += 1;
+        self.window.add_episode(episode);
+    }
+}
+
+impl Trainer {
+    /// Writes a checkpoint.
+    pub(super) fn save(&mut self, recorder: &mut dyn Recorder) -> Result<()> {
+        let mut time = 0.0;
+        timed(&mut time, || self.write_checkpoint())?;
+        self.time.checkpoints_s += time;
+        recorder.record(&Event::Checkpoint(self.counters.steps))
+    }
+
+    fn write_checkpoint(&mut self) -> Result<()> {
+        let step = self.counters.steps;
+        self.counters.checkpoints_due = step / self.config.train.checkpoint_every_steps;
+        let segments = self.checkpoints.write_replay(step, &self.replay, &self.segments)?;
+        let (first, second, adam_steps) = self.learner.optimizer.to_parts()?;
+        let mut blobs = BTreeMap::new();
+        blobs.insert("rng.exploration".to_owned(), rng::save(&self.exploration));
+        blobs.insert("rng.replay".to_owned(), rng::save(&self.sampling));
+        for (index, lane) in self.lanes.iter().enumerate() {
+            blobs.insert(format!("task.{index}"), lane.task.save_state());
+            blobs.insert(format!("rng.episodes.{index}"), rng::save(&lane.seeds));
+        }
+        let state = State {
+            config: self.config_text(),
+            counters: Counters { elapsed_s: self.elapsed_s(), ..self.counters.clone() },
+            updates: self.learner.updates,
+            adam_steps,
+            episodes: self.lanes.iter().map(|lane| lane.episode).collect(),
+            metrics_bytes: self.metrics.bytes()?,
+            segments: segments.clone(),
+        };
+        let checkpoint = Checkpoint {
+            state: serde_json::to_string(&state).expect("a state holds only numbers and strings"),
+            blobs,
+            vectors: BTreeMap::from([
+                ("target".to_owned(), self.learner.target.to_vec()?),
+                ("adam.first".to_owned(), first),
+                ("adam.second".to_owned(), second),
+            ]),
+            model: Model::of(&self.learner.online)?,
+        };
+        self.checkpoints.write(step, &checkpoint, [&segments, &self.segments])?;
+        self.segments = segments;
+        Ok(())
+    }
+
+    /// Goes on from the newest checkpoint; without any, from the beginning.
+    pub(super) fn resume(&mut self, run: &RunDir) -> Result<()> {
+        let Some(dir) = CheckpointStore::list(run.path())?.pop() else {
+            return self.metrics.truncate(0);
+        };
+        let mut checkpoint = Checkpoint::read(&dir, self.learner.online.architecture())?;
+        let state: State = serde_json::from_str(&checkpoint.state)
+            .map_err(|error| Error::checkpoint(&dir, error, "the state of a run of this version"))?;
+        if state.config != self.config_text() {
+            return Err(Error::checkpoint(&dir, "another configuration", "the run's own config.toml, unchanged"));
+        }
+        self.restore_learner(&mut checkpoint, &state, &dir)?;
+        self.restore_lanes(&mut checkpoint, &state, &dir)?;
+        self.exploration = rng::restore(&checkpoint.blob("rng.exploration", &dir)?)?;
+        self.sampling = rng::restore(&checkpoint.blob("rng.replay", &dir)?)?;
+        self.checkpoints.read_replay(&state.segments, &mut self.replay)?;
+        self.metrics.truncate(state.metrics_bytes)?;
+        self.counters = state.counters;
+        self.segments = state.segments;
+        Ok(())
+    }
+
+    fn restore_learner(&mut self, checkpoint: &mut Checkpoint, state: &State, dir: &Path) -> Result<()> {
+        let device = self.learner.online.device();
+        let count = checkpoint.model.values.len();
+        let [target, first, second] = ["target", "adam.first", "adam.second"];
+        let target = Model { values: checkpoint.vector(target, count, dir)?, ..checkpoint.model.clone() };
+        self.learner.online = checkpoint.model.network(device)?;
+        self.learner.target = target.network(device)?;
+        let (first, second) = (checkpoint.vector(first, count, dir)?, checkpoint.vector(second, count, dir)?);
+        self.learner.optimizer = Adam::restore(&first, &second, state.adam_steps, device)?;
+        self.learner.updates = state.updates;
+        Ok(())
+    }
+
+    fn restore_lanes(&mut self, checkpoint: &mut Checkpoint, state: &State, dir: &Path) -> Result<()> {
+        if state.episodes.len() != self.lanes.len() {
+            let got = format!("{} environments", state.episodes.len());
+            return Err(Error::checkpoint(dir, got, format!("{}", self.lanes.len())));
+        }
+        for (index, lane) in self.lanes.iter_mut().enumerate() {
+            lane.task.load_state(&checkpoint.blob(&format!("task.{index}"), dir)?)?;
+            lane.seeds = rng::restore(&checkpoint.blob(&format!("rng.episodes.{index}"), dir)?)?;
+            lane.episode = state.episodes[index];
+        }
+        Ok(())
+    }
+
+    /// The configuration as a checkpoint remembers it; where the goal's file lies does not matter.
+    fn config_text(&self) -> String {
+        let mut config = self.config.clone();
+        config.reward.goal = None;
+        toml::to_string(&config).expect("a configuration is plain tables")
+    }
+}

@@ -1,0 +1,212 @@
+//! Whole small runs: repeatable, resumable to the bit, and safe against damage.
+#![expect(clippy::unwrap_used, reason = "a test may panic")]
+
+use std::cell::Cell;
+use std::fs;
+use std::path::Path;
+
+use prf_core::Frame;
+use prf_dqn::config::RunConfig;
+use prf_dqn::record::{Event, Recorder};
+use prf_dqn::run_dir::RunDir;
+use prf_dqn::trainer::{Ending, Trainer, set_threads};
+
+/// Small in every respect, but with updates, target copies, evaluations, truncations and a replay that overflows.
+const CONFIG: &str = r#"
+seed = 7
+[env]
+name = "breakout"
+limit_steps = 30
+[reward]
+source = "perceptual"
+descriptor = "direct"
+goal = "black.png"
+[train]
+steps = 480
+environments = 4
+batch_size = 8
+replay_steps = 200
+learning_starts = 100
+steps_per_update = 8
+target_every_updates = 10
+learning_rate = 1e-3
+final_learning_rate = 1e-4
+threads = 1
+checkpoint_every_steps = 120
+[train.epsilon]
+decay_steps = 300
+[evaluation]
+every_episodes = 6
+episodes = 3
+"#;
+
+struct Silent;
+
+impl Recorder for Silent {
+    fn record(&mut self, _event: &Event) -> prf_dqn::Result<()> {
+        Ok(())
+    }
+}
+
+fn config() -> RunConfig {
+    toml::from_str(CONFIG).unwrap()
+}
+
+fn open(config: &RunConfig, dir: &Path) -> prf_dqn::Result<Trainer> {
+    set_threads(config);
+    let goal = Frame::new(84, 84);
+    let run = if dir.join("config.toml").exists() {
+        RunDir::at(dir)
+    } else {
+        RunDir::create(dir, config, Some(&goal))?
+    };
+    Trainer::open(config.clone(), Some(&goal), &run, tch::Device::Cpu)
+}
+
+/// Trains until the end, or until the loop has gone round `rounds` times.
+fn train(config: &RunConfig, dir: &Path, rounds: usize) -> Ending {
+    let left = Cell::new(rounds);
+    let stop = || left.replace(left.get().saturating_sub(1)) == 0;
+    open(config, dir).unwrap().run(&mut Silent, &stop).unwrap()
+}
+
+/// `metrics.jsonl` without what depends on the clock.
+fn metrics(dir: &Path) -> Vec<serde_json::Value> {
+    let text = fs::read_to_string(dir.join("metrics.jsonl")).unwrap();
+    text.lines()
+        .map(|line| {
+            let mut record: serde_json::Value = serde_json::from_str(line).unwrap();
+            let fields = record.as_object_mut().unwrap();
+            fields.remove("time_s").unwrap();
+            fields.remove("steps_per_s");
+            record
+        })
+        .collect()
+}
+
+fn final_model(dir: &Path) -> Vec<u8> {
+    fs::read(newest_checkpoint(dir).join("model.safetensors")).unwrap()
+}
+
+fn newest_checkpoint(dir: &Path) -> std::path::PathBuf {
+    prf_dqn::checkpoint::CheckpointStore::list(dir).unwrap().pop().unwrap()
+}
+
+#[test]
+fn the_same_seed_gives_the_same_run_and_another_seed_another() {
+    let (first, second, other) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    assert_eq!(train(&config(), first.path(), usize::MAX), Ending::Finished);
+    train(&config(), second.path(), usize::MAX);
+    train(&RunConfig { seed: 8, ..config() }, other.path(), usize::MAX);
+    assert!(metrics(first.path()).len() > 4, "too few records to compare: {:?}", metrics(first.path()));
+    assert_eq!(metrics(first.path()), metrics(second.path()));
+    assert_eq!(final_model(first.path()), final_model(second.path()));
+    assert_ne!(metrics(first.path()), metrics(other.path()));
+}
+
+#[test]
+fn interrupted_runs_continue_to_the_same_bits() {
+    let (whole, parts) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    train(&config(), whole.path(), usize::MAX);
+    for rounds in [0, 1, 37, 5, 50] {
+        assert_eq!(train(&config(), parts.path(), rounds), Ending::Interrupted);
+    }
+    assert_eq!(train(&config(), parts.path(), usize::MAX), Ending::Finished);
+    assert_eq!(metrics(parts.path()), metrics(whole.path()));
+    assert_eq!(final_model(parts.path()), final_model(whole.path()));
+}
+
+#[test]
+fn a_killed_run_falls_back_to_its_last_checkpoint_and_loses_nothing_of_it() {
+    let (whole, killed) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    train(&config(), whole.path(), usize::MAX);
+    train(&config(), killed.path(), 70);
+    // What a kill leaves behind: records after the checkpoint, one of them half written, and unfinished files.
+    let metrics_path = killed.path().join("metrics.jsonl");
+    let mut text = fs::read_to_string(&metrics_path).unwrap();
+    text.push_str("{\"kind\":\"train\",\"step\":9999}\n{\"kind\":\"eval");
+    fs::write(&metrics_path, text).unwrap();
+    let partial = killed.path().join("checkpoints/.partial-step-000000009999");
+    fs::create_dir(&partial).unwrap();
+    fs::write(partial.join("model.safetensors"), "half").unwrap();
+    fs::write(killed.path().join("replay/.partial-step-000000009999.lz4"), "half").unwrap();
+
+    assert_eq!(train(&config(), killed.path(), usize::MAX), Ending::Finished);
+    assert_eq!(metrics(killed.path()), metrics(whole.path()));
+    assert_eq!(final_model(killed.path()), final_model(whole.path()));
+    assert!(!partial.exists(), "leftovers of the kill are still there");
+}
+
+#[test]
+fn a_run_killed_before_its_first_checkpoint_starts_over() {
+    let (whole, killed) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    train(&config(), whole.path(), usize::MAX);
+    drop(open(&config(), killed.path()).unwrap());
+    fs::write(killed.path().join("metrics.jsonl"), "{\"kind\":\"train\"").unwrap();
+    train(&config(), killed.path(), usize::MAX);
+    assert_eq!(metrics(killed.path()), metrics(whole.path()));
+}
+
+#[test]
+fn only_the_newest_two_checkpoints_and_their_replay_are_kept() {
+    let dir = tempfile::tempdir().unwrap();
+    train(&config(), dir.path(), usize::MAX);
+    let kept = prf_dqn::checkpoint::CheckpointStore::list(dir.path()).unwrap();
+    assert_eq!(kept.len(), 2);
+    // The older of the two must still be good to resume from, whose replay has partly been overwritten since.
+    fs::remove_dir_all(&kept[1]).unwrap();
+    assert_eq!(train(&config(), dir.path(), usize::MAX), Ending::Finished);
+    let whole = tempfile::tempdir().unwrap();
+    train(&config(), whole.path(), usize::MAX);
+    assert_eq!(final_model(dir.path()), final_model(whole.path()));
+}
+
+#[test]
+fn damaged_checkpoints_are_refused_by_name_and_left_alone() {
+    let dir = tempfile::tempdir().unwrap();
+    train(&config(), dir.path(), 60);
+    let checkpoint = newest_checkpoint(dir.path());
+    let segment = fs::read_dir(dir.path().join("replay")).unwrap().next().unwrap().unwrap().path();
+    for path in [checkpoint.join("model.safetensors"), checkpoint.join("state.safetensors"), segment] {
+        let whole = fs::read(&path).unwrap();
+        fs::write(&path, &whole[..whole.len() / 2]).unwrap();
+        let error = open(&config(), dir.path()).err().unwrap().to_string();
+        let name = path.file_name().unwrap().to_str().unwrap();
+        assert!(error.contains(name) && error.contains("expected"), "{error}");
+        assert_eq!(fs::read(&path).unwrap().len(), whole.len() / 2, "the damaged file was changed");
+        fs::write(&path, whole).unwrap();
+    }
+    open(&config(), dir.path()).unwrap();
+}
+
+#[test]
+fn a_checkpoint_of_another_configuration_is_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    train(&config(), dir.path(), 40);
+    let mut other = config();
+    other.train.gamma = 0.5;
+    let error = open(&other, dir.path()).err().unwrap().to_string();
+    assert!(error.contains("another configuration"), "{error}");
+}
+
+#[test]
+fn a_run_folder_is_never_begun_twice() {
+    let dir = tempfile::tempdir().unwrap();
+    RunDir::create(dir.path(), &config(), None).unwrap();
+    let error = RunDir::create(dir.path(), &config(), None).err().unwrap();
+    assert!(matches!(&error, prf_dqn::Error::Io { source, .. } if source.kind() == std::io::ErrorKind::AlreadyExists));
+}
+
+#[test]
+fn the_resolved_configuration_is_complete_and_reads_back_the_same() {
+    let dir = tempfile::tempdir().unwrap();
+    let goal = Frame::new(84, 84);
+    let run = RunDir::create(&dir.path().join("run"), &config(), Some(&goal)).unwrap();
+    let text = fs::read_to_string(run.config_path()).unwrap();
+    let read: RunConfig = toml::from_str(&text).unwrap();
+    let mut expected = config();
+    expected.reward.goal = Some("goal.png".into());
+    assert_eq!(read, expected);
+    assert!(text.contains("gamma") && text.contains("orientations"), "defaults are missing:\n{text}");
+    assert_eq!(prf_core::io::read_frame(run.path().join("goal.png")).unwrap(), goal);
+}

@@ -1,0 +1,31 @@
+//! Worlds that draw themselves, and the tasks that rewards make of them.
+//!
+//! A world ([`Environment`]) has rules, a picture and a score of its own, and knows nothing of perceptual rewards. A
+//! [`Task`] joins a world with a source of reward and a state representation: it is what an agent learns.
+//!
+//! ```
+//! use prf_envs::players::{self, Oracle};
+//! use prf_envs::{EnvConfig, registry};
+//!
+//! let mut world = registry::make(&EnvConfig::new("breakout"))?;
+//! let episode = players::play_episode(world.as_mut(), &mut Oracle, 7)?;
+//! assert!(episode.score >= 2.0);
+//! # Ok::<(), prf_envs::Error>(())
+//! ```
+
+pub mod breakout;
+mod bytes;
+pub mod check;
+mod env;
+mod error;
+pub mod players;
+pub mod raster;
+pub mod registry;
+pub mod rng;
+mod task;
+
+pub use env::{Environment, Spec, Status, Step};
+pub use error::Error;
+pub use task::{
+    DescriptorKind, EnvConfig, RewardConfig, RewardSource, StateConfig, StateKind, Task, TaskConfig, TaskStep,
+};

@@ -1,0 +1,171 @@
+//! A world joined with a source of reward and a state representation: what an agent learns.
+
+mod config;
+mod state;
+
+use prf_core::{DirectDescriptor, Frame, TaskDescriptor};
+
+pub use self::config::{DescriptorKind, EnvConfig, RewardConfig, RewardSource, StateConfig, StateKind, TaskConfig};
+use self::state::Representation;
+use crate::bytes::Reader;
+use crate::{Environment, Error, Spec, Status, registry};
+
+/// Marks a task's state and the version of its layout.
+const TAG: &[u8] = b"task1";
+
+/// What one step of a task brought.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TaskStep {
+    /// The reward of the chosen source: F in (0, 1] of the frame after the action, or the world's own.
+    pub reward: f32,
+    /// The world's score so far in this episode.
+    pub score: f32,
+    /// Where the episode stands.
+    pub status: Status,
+}
+
+/// A world, its reward and what the agent sees of it.
+///
+/// ```
+/// use prf_core::Frame;
+/// use prf_envs::{EnvConfig, RewardConfig, StateConfig, Task, TaskConfig};
+///
+/// let config = TaskConfig {
+///     env: EnvConfig::new("breakout"),
+///     reward: RewardConfig::perceptual("black.png"),
+///     state: StateConfig::default(),
+/// };
+/// let mut task = Task::new(&config, Some(&Frame::new(84, 84)))?;
+/// task.reset(1);
+/// let step = task.step(0)?;
+/// assert!(step.reward > 0.0 && step.reward < 1.0);
+/// assert_eq!(task.observation().len(), 84 * 84);
+/// # Ok::<(), prf_envs::Error>(())
+/// ```
+pub struct Task {
+    environment: Box<dyn Environment>,
+    reward: Reward,
+    mirror: Frame,
+    state: Representation,
+}
+
+enum Reward {
+    Variable,
+    Perceptual(Box<dyn TaskDescriptor>),
+}
+
+impl Task {
+    /// The task of `config` before its first episode.
+    ///
+    /// `goal` is the picture that `reward.goal` names; a perceptual reward needs it, a variable one takes none.
+    ///
+    /// # Errors
+    /// As [`TaskConfig::validate`]; a missing or superfluous goal; a goal that the descriptor can't use.
+    pub fn new(config: &TaskConfig, goal: Option<&Frame>) -> Result<Task, Error> {
+        config.validate()?;
+        let environment = registry::make(&config.env)?;
+        let &Spec { width, height, .. } = environment.spec();
+        Ok(Task {
+            environment,
+            reward: Reward::new(&config.reward, goal)?,
+            mirror: Frame::new(width, height),
+            state: Representation::new(&config.state, width, height)?,
+        })
+    }
+
+    /// The world's fixed facts.
+    pub fn spec(&self) -> &Spec {
+        self.environment.spec()
+    }
+
+    /// Begins the episode of `seed`; [`observation`](Task::observation) then holds the first state.
+    pub fn reset(&mut self, seed: u64) {
+        self.environment.reset(seed);
+        if let Reward::Perceptual(descriptor) = &mut self.reward {
+            descriptor.reset();
+        }
+        self.state.reset();
+        self.look();
+    }
+
+    /// Plays one step with `action`, an index into [`Spec::actions`].
+    ///
+    /// # Errors
+    /// As [`Environment::step`].
+    pub fn step(&mut self, action: usize) -> Result<TaskStep, Error> {
+        let step = self.environment.step(action)?;
+        self.look();
+        let reward = match &mut self.reward {
+            Reward::Variable => step.reward,
+            Reward::Perceptual(descriptor) => descriptor.observe(self.mirror.view()).reward,
+        };
+        Ok(TaskStep { reward, score: step.score, status: step.status })
+    }
+
+    /// What the agent sees now: height × width grey values, row by row. All black before the first reset.
+    pub fn observation(&self) -> &[u8] {
+        self.state.observation().unwrap_or(self.mirror.as_slice())
+    }
+
+    /// The world's picture now.
+    pub fn mirror(&self) -> &Frame {
+        &self.mirror
+    }
+
+    /// The world.
+    pub fn environment(&self) -> &dyn Environment {
+        self.environment.as_ref()
+    }
+
+    /// Everything that decides how the episode goes on, to the last bit.
+    pub fn save_state(&self) -> Vec<u8> {
+        let world = self.environment.save_state();
+        let mut bytes = TAG.to_vec();
+        bytes.extend((world.len() as u32).to_le_bytes());
+        bytes.extend(world);
+        self.state.save_into(&mut bytes);
+        bytes
+    }
+
+    /// Continues where [`save_state`](Task::save_state) was called, on this task or one of the same config.
+    ///
+    /// # Errors
+    /// [`Error::BadState`] if the bytes are damaged or of another kind of task; the task is as it was before.
+    pub fn load_state(&mut self, bytes: &[u8]) -> Result<(), Error> {
+        let mut reader = Reader::new("a task", bytes);
+        reader.tag(TAG)?;
+        let world_len = reader.u32()? as usize;
+        let world = reader.take(world_len)?;
+        let state = self.state.restored(&mut reader)?;
+        reader.finish()?;
+        self.environment.load_state(world)?;
+        self.environment.draw_into(&mut self.mirror);
+        self.state = state;
+        Ok(())
+    }
+
+    /// Draws the world and takes the picture in.
+    fn look(&mut self) {
+        self.environment.draw_into(&mut self.mirror);
+        self.state.update(self.mirror.view());
+    }
+}
+
+impl Reward {
+    fn new(config: &RewardConfig, goal: Option<&Frame>) -> Result<Reward, Error> {
+        let Some(kind) = config.descriptor else {
+            return match goal {
+                None => Ok(Reward::Variable),
+                Some(_) => Err(Error::param("reward.goal", "a picture", "none for a variable reward")),
+            };
+        };
+        let goal = goal.ok_or_else(|| Error::param("reward.goal", "no picture", "one for a perceptual reward"))?;
+        match kind {
+            DescriptorKind::Direct => {
+                let descriptor =
+                    DirectDescriptor::new(goal, config.params()).map_err(|error| error.within("reward"))?;
+                Ok(Reward::Perceptual(Box::new(descriptor)))
+            }
+        }
+    }
+}

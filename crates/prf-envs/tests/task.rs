@@ -1,0 +1,172 @@
+//! A world with its reward and state representation.
+
+use prf_core::{DirectDescriptor, EmaState, Frame, TaskDescriptor};
+use prf_envs::{EnvConfig, Error, RewardConfig, StateConfig, StateKind, Status, Task, TaskConfig};
+use proptest::prelude::*;
+
+fn config(reward: RewardConfig, kind: StateKind) -> TaskConfig {
+    TaskConfig { env: EnvConfig::new("breakout"), reward, state: StateConfig { kind, ..StateConfig::default() } }
+}
+
+fn perceptual(kind: StateKind) -> Task {
+    let config = config(RewardConfig::perceptual("black.png"), kind);
+    Task::new(&config, Some(&black())).expect("the config is valid")
+}
+
+fn variable(kind: StateKind) -> Task {
+    Task::new(&config(RewardConfig::variable(), kind), None).expect("the config is valid")
+}
+
+fn black() -> Frame {
+    Frame::new(84, 84)
+}
+
+fn oracle(task: &Task) -> usize {
+    task.environment().oracle_action()
+}
+
+#[test]
+fn the_perceptual_reward_is_that_of_the_frame_after_the_action() -> Result<(), Error> {
+    let mut task = perceptual(StateKind::Ema);
+    let params = RewardConfig::perceptual("black.png").params();
+    let mut descriptor = DirectDescriptor::new(&black(), params)?;
+    let mut frame = black();
+    task.reset(4);
+    for _ in 0..100 {
+        let step = task.step(oracle(&task))?;
+        task.environment().draw_into(&mut frame);
+        assert_eq!(step.reward, descriptor.observe(frame.view()).reward);
+        assert_eq!(task.mirror(), &frame);
+    }
+    Ok(())
+}
+
+#[test]
+fn the_variable_reward_counts_bricks() -> Result<(), Error> {
+    let mut task = variable(StateKind::Mirror);
+    task.reset(4);
+    let mut total = 0.0;
+    loop {
+        let step = task.step(oracle(&task))?;
+        total += step.reward;
+        assert_eq!(step.score, total);
+        if step.status.is_over() {
+            assert_eq!(step.status, Status::Truncated);
+            assert!(total >= 2.0);
+            return Ok(());
+        }
+    }
+}
+
+#[test]
+fn the_average_begins_anew_with_each_episode() -> Result<(), Error> {
+    let mut task = variable(StateKind::Ema);
+    assert_eq!(task.observation(), black().as_slice());
+    for seed in [1, 2] {
+        let mut ema = EmaState::new(84, 84, 0.7)?;
+        task.reset(seed);
+        assert_eq!(task.observation(), ema.update(task.mirror().view()));
+        assert_eq!(task.observation(), task.mirror().as_slice());
+        for _ in 0..20 {
+            task.step(oracle(&task))?;
+            assert_eq!(task.observation(), ema.update(task.mirror().view()));
+        }
+        assert_ne!(task.observation(), task.mirror().as_slice());
+    }
+    Ok(())
+}
+
+#[test]
+fn the_mirror_state_is_the_frame() -> Result<(), Error> {
+    let mut task = variable(StateKind::Mirror);
+    assert_eq!(task.observation(), black().as_slice());
+    task.reset(1);
+    task.step(0)?;
+    assert_eq!(task.observation(), task.mirror().as_slice());
+    assert_ne!(task.observation(), black().as_slice());
+    Ok(())
+}
+
+#[test]
+fn a_refused_step_changes_nothing() -> Result<(), Error> {
+    let mut task = perceptual(StateKind::Ema);
+    assert!(matches!(task.step(0), Err(Error::NotReset { .. })));
+    task.reset(1);
+    let before = (task.save_state(), task.observation().to_vec());
+    assert!(matches!(task.step(3), Err(Error::UnknownAction { got: 3, last: 2, .. })));
+    assert_eq!((task.save_state(), task.observation().to_vec()), before);
+    Ok(())
+}
+
+#[test]
+fn goals_must_fit_the_source() {
+    let complaint = |reward, goal: Option<&Frame>| {
+        let error = Task::new(&config(reward, StateKind::Ema), goal).map(|_| ()).expect_err("the goal doesn't fit");
+        error.to_string()
+    };
+    assert_eq!(
+        complaint(RewardConfig::perceptual("black.png"), None),
+        "reward.goal: got no picture, expected one for a perceptual reward"
+    );
+    assert_eq!(
+        complaint(RewardConfig::variable(), Some(&black())),
+        "reward.goal: got a picture, expected none for a variable reward"
+    );
+}
+
+#[test]
+fn states_of_other_tasks_are_refused() -> Result<(), Error> {
+    let (mut ema, mut mirror) = (variable(StateKind::Ema), variable(StateKind::Mirror));
+    ema.reset(1);
+    mirror.reset(2);
+    let before = (mirror.save_state(), ema.save_state());
+    assert!(matches!(mirror.load_state(&before.1), Err(Error::BadState { .. })));
+    let shortened = &before.1[..before.1.len() - 4];
+    assert!(matches!(ema.load_state(shortened), Err(Error::BadState { .. })));
+    let mut nan = before.1.clone();
+    let at = nan.len() - 4;
+    nan[at..].copy_from_slice(&f32::NAN.to_le_bytes());
+    assert!(matches!(ema.load_state(&nan), Err(Error::BadState { .. })));
+    assert_eq!((mirror.save_state(), ema.save_state()), before);
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(48) })]
+
+    #[test]
+    fn a_restored_task_goes_on_bit_by_bit(seed: u64, cut in 0..99usize, mirror: bool, actions in prop::collection::vec(0..4usize, 100)) {
+        let kind = if mirror { StateKind::Mirror } else { StateKind::Ema };
+        let (mut task, mut restored) = (perceptual(kind), perceptual(kind));
+        task.reset(seed);
+        restored.reset(seed.wrapping_add(1));
+        for (count, action) in actions.into_iter().enumerate() {
+            if count == cut {
+                restored.load_state(&task.save_state())?;
+            }
+            let action = if action == 3 { oracle(&task) } else { action };
+            let step = task.step(action)?;
+            if count >= cut {
+                prop_assert_eq!(step, restored.step(action)?);
+                prop_assert_eq!(task.observation(), restored.observation());
+                prop_assert_eq!(task.save_state(), restored.save_state());
+            }
+            if step.status.is_over() {
+                break;
+            }
+        }
+    }
+
+    #[test]
+    fn damaged_states_never_panic(seed: u64, mirror: bool, at in 0..28_400usize, byte: u8, keep in 0..28_400usize) {
+        let mut task = variable(if mirror { StateKind::Mirror } else { StateKind::Ema });
+        task.reset(seed);
+        let mut bytes = task.save_state();
+        let at = at.min(bytes.len() - 1) % 200;
+        bytes[at.min(60)] = byte;
+        bytes.truncate(keep.max(1000));
+        if task.load_state(&bytes).is_ok() && task.step(oracle(&task)).is_ok() {
+            prop_assert_eq!(task.observation().len(), 84 * 84);
+        }
+    }
+}

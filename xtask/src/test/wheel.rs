@@ -1,0 +1,95 @@
+//! The Python package: installed into a virtual environment of its own and tested there.
+
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::{env, fs};
+
+use anyhow::{Context, Result};
+
+use super::Runner;
+use crate::python::Python;
+
+/// Installs the package as a user would and runs its tests. The environment is kept for the next
+/// time, when nothing need be fetched.
+pub(super) fn test(root: &Path, runner: &mut Runner<'_>) -> Result<()> {
+    let package = root.join("crates/prf-py");
+    let requirements = package.join("requirements-test.txt");
+    let python = Python::find(&env::var_os("PATH").unwrap_or_default())?;
+    let venv = Venv::new(target(root).join("venv"), &python, &requirements)?;
+    if venv.is_ready() {
+        let mut pip = venv.pip_install()?;
+        pip.args(["--no-build-isolation", "--no-deps", "--force-reinstall"]);
+        pip.arg(&package);
+        runner.run(pip)?;
+    } else {
+        python.require_venv()?;
+        let mut make = python.command();
+        make.args(["-m", "venv", "--clear"]).arg(&venv.folder);
+        runner.run(make)?;
+        let mut pip = venv.pip_install()?;
+        pip.arg("--requirement").arg(&requirements);
+        runner.run(pip)?;
+        let mut pip = venv.pip_install()?;
+        pip.arg(format!("{}[test]", package.display()));
+        runner.run(pip)?;
+        venv.mark_ready()?;
+    }
+    let mut pytest = venv.python();
+    pytest.args(["-m", "pytest", "--color=no"]).arg(package.join("tests"));
+    pytest.current_dir(&package);
+    runner.run(pytest)
+}
+
+/// A virtual environment that knows what it was made for.
+struct Venv {
+    folder: PathBuf,
+    stamp: String,
+}
+
+impl Venv {
+    fn new(folder: PathBuf, python: &Python, requirements: &Path) -> Result<Venv> {
+        let wanted =
+            fs::read_to_string(requirements).with_context(|| format!("can't read {}", requirements.display()))?;
+        let (major, minor) = python.version();
+        let stamp = format!("Python {major}.{minor}\n{wanted}");
+        Ok(Venv { folder, stamp })
+    }
+
+    fn is_ready(&self) -> bool {
+        fs::read_to_string(self.stamp_file()).is_ok_and(|stamp| stamp == self.stamp)
+    }
+
+    fn mark_ready(&self) -> Result<()> {
+        Ok(fs::write(self.stamp_file(), &self.stamp)?)
+    }
+
+    fn stamp_file(&self) -> PathBuf {
+        self.folder.join("prf-stamp")
+    }
+
+    fn python(&self) -> Command {
+        Command::new(self.folder.join("bin/python"))
+    }
+
+    fn pip_install(&self) -> Result<Command> {
+        let mut command = self.python();
+        command
+            .args(["-m", "pip", "install", "--disable-pip-version-check"])
+            // maturin is found there when pip does not fetch one of its own.
+            .env("PATH", with_first(&self.folder.join("bin"))?)
+            // With checks on, like the other tests, and sharing what is built already.
+            .env("MATURIN_PEP517_ARGS", "--profile=dev");
+        Ok(command)
+    }
+}
+
+fn with_first(folder: &Path) -> Result<OsString> {
+    let path = env::var_os("PATH").unwrap_or_default();
+    let folders = std::iter::once(folder.to_path_buf()).chain(env::split_paths(&path));
+    Ok(env::join_paths(folders)?)
+}
+
+fn target(root: &Path) -> PathBuf {
+    env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), |dir| root.join(dir))
+}
