@@ -11,7 +11,6 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 mod common;
-mod pictures;
 
 use common::prf;
 
@@ -41,7 +40,7 @@ episodes = 3
 
 fn folder() -> TempDir {
     let folder = tempfile::tempdir().expect("a temporary folder can be made");
-    pictures::flat(&folder.path().join("black.png"), 0);
+    image::GrayImage::new(84, 84).save(folder.path().join("black.png")).expect("the folder is ours");
     fs::write(folder.path().join("c.toml"), CONFIG).expect("the folder is ours");
     folder
 }
@@ -118,7 +117,13 @@ fn a_run_folder_holds_everything_and_can_be_evaluated() {
     assert_eq!(frames[0].buffer().dimensions(), (336, 336));
 
     for path in [newest(&run), newest(&run).join("model.safetensors"), run.join("checkpoints/best")] {
-        prf(folder.path()).arg("eval").arg(path).args(["--episodes", "1"]).assert().success().stdout(contains("oracle"));
+        prf(folder.path())
+            .arg("eval")
+            .arg(path)
+            .args(["--episodes", "1"])
+            .assert()
+            .success()
+            .stdout(contains("oracle"));
     }
 }
 
@@ -159,7 +164,15 @@ fn resumes_like_an_uninterrupted_run(folder: &TempDir) {
     let run = folder.path().join("run");
     let before = metrics_lines(&run);
     let mut command = Command::new(assert_cmd::cargo::cargo_bin!("prf"));
-    command.current_dir(folder.path()).args(["train", "c.toml", "--out", "run", "--set", "train.steps=100000", "--resume"]);
+    command.current_dir(folder.path()).args([
+        "train",
+        "c.toml",
+        "--out",
+        "run",
+        "--set",
+        "train.steps=100000",
+        "--resume",
+    ]);
     let child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().expect("prf starts");
     let deadline = Instant::now() + Duration::from_secs(240);
     while metrics_lines(&run) < before + 4 {
@@ -253,7 +266,7 @@ fn a_dry_run_prints_config_memory_and_time_and_starts_nothing() {
     let text = String::from_utf8_lossy(&output.get_output().stdout).into_owned();
     assert!(text.contains("# replay memory: 7.0") && text.contains("# time on this machine: about"), "{text}");
     let config: toml::Table = text.parse().expect("what is printed is a config");
-    assert_eq!(config["train"]["gamma"].as_float(), Some(f64::from(0.99f32)));
+    assert_eq!(config["train"]["gamma"].as_float(), Some(0.99));
     assert!(!folder.path().join("run").exists() && !folder.path().join("runs").exists());
 }
 
@@ -267,5 +280,9 @@ fn a_device_that_is_not_there_is_refused() {
 #[test]
 fn there_is_nothing_to_evaluate_in_an_empty_folder() {
     let folder = folder();
-    prf(folder.path()).args(["eval", "nowhere"]).assert().code(2).stderr(contains("no run with a checkpoint in nowhere"));
+    prf(folder.path())
+        .args(["eval", "nowhere"])
+        .assert()
+        .code(2)
+        .stderr(contains("no run with a checkpoint in nowhere"));
 }

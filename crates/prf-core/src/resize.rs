@@ -24,6 +24,8 @@ use crate::{Error, FrameView, PlaneView};
 pub struct Resizer {
     across: Taps,
     down: Taps,
+    /// A row of the source.
+    line: Vec<f32>,
     /// The source with its width already rescaled, row by row.
     widened: Vec<f32>,
     output: Vec<f32>,
@@ -49,7 +51,11 @@ impl Resizer {
         self.widened.resize(image.height() * width, 0.0);
         self.output.resize(height * width, 0.0);
         for (y, out) in self.widened.chunks_exact_mut(width).enumerate() {
-            self.across.mix_pixels(image.row(y), out);
+            // Bytes stay whole numbers until they have been mixed, so that their differences are exact.
+            self.line.clear();
+            self.line.extend(image.row(y).iter().map(|pixel| pixel.value()));
+            self.across.mix_pixels(&self.line, out);
+            out.iter_mut().for_each(|v| *v /= P::WHITE);
         }
         let widened = Region::whole(width, image.height(), &self.widened);
         for (y, out) in self.output.chunks_exact_mut(width).enumerate() {
@@ -109,16 +115,20 @@ impl Taps {
     }
 
     /// Along a row.
-    fn mix_pixels<P: Sample>(&self, row: &[P], out: &mut [f32]) {
-        for (out, &start) in out.iter_mut().zip(&self.starts) {
-            *out = row[start].value();
-        }
-        for (k, weights) in (1..).zip(self.weights.chunks_exact(self.to)) {
+    fn mix_pixels(&self, row: &[f32], out: &mut [f32]) {
+        let mut rounds = (1..).zip(self.weights.chunks_exact(self.to));
+        if let Some((_, weights)) = rounds.next() {
             for ((out, &start), weight) in out.iter_mut().zip(&self.starts).zip(weights) {
-                *out += weight * row[start + k].minus(row[start]);
+                *out = row[start] + weight * (row[start + 1] - row[start]);
+            }
+        } else {
+            out.iter_mut().zip(&self.starts).for_each(|(out, &start)| *out = row[start]);
+        }
+        for (k, weights) in rounds {
+            for ((out, &start), weight) in out.iter_mut().zip(&self.starts).zip(weights) {
+                *out += weight * (row[start + k] - row[start]);
             }
         }
-        out.iter_mut().for_each(|v| *v /= P::WHITE);
     }
 
     /// Row `i` of the result, of whole rows.

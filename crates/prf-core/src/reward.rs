@@ -15,6 +15,8 @@ pub struct RewardParams {
 }
 
 impl RewardParams {
+    /// Checks every parameter's range.
+    ///
     /// # Errors
     ///
     /// [`Error::InvalidParam`] with the key of the first parameter that is out of range.

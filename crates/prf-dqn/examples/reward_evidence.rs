@@ -10,7 +10,9 @@
 use std::error::Error;
 use std::path::Path;
 
-use prf_core::{CellSize, DirectDescriptor, DistanceScale, Frame, HogParams, Norm, RewardParams, TaskDescriptor, spearman};
+use prf_core::{
+    CellSize, DirectDescriptor, DistanceScale, Frame, HogParams, Norm, RewardParams, TaskDescriptor, spearman,
+};
 use prf_dqn::checkpoint::Model;
 use prf_dqn::evaluate::episode_seeds;
 use prf_dqn::learner::greedy_actions;
@@ -73,12 +75,16 @@ fn row(states: &[State], params: RewardParams) -> Result<(), Box<dyn Error>> {
         .collect();
     let rank = |least: f64, most: f64| {
         let within = scored.iter().filter(|(cleared, ..)| (least..=most).contains(cleared));
-        let (cleared, closeness): (Vec<f64>, Vec<f64>) = within.map(|(cleared, closeness, _)| (*cleared, *closeness)).unzip();
+        let (cleared, closeness): (Vec<f64>, Vec<f64>) =
+            within.map(|(cleared, closeness, _)| (*cleared, *closeness)).unzip();
         spearman(&cleared, &closeness).unwrap_or(f64::NAN)
     };
     let mean = |least: f64, most: f64| {
-        let rewards: Vec<f64> =
-            scored.iter().filter(|(cleared, ..)| (least..=most).contains(cleared)).map(|(_, _, reward)| *reward).collect();
+        let rewards: Vec<f64> = scored
+            .iter()
+            .filter(|(cleared, ..)| (least..=most).contains(cleared))
+            .map(|(_, _, reward)| *reward)
+            .collect();
         rewards.iter().sum::<f64>() / rewards.len() as f64
     };
     let number = |value: f64| if value < 0.001 { format!("{value:.0e}") } else { format!("{value:.3}") };

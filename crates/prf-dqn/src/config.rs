@@ -63,6 +63,9 @@ pub struct TrainConfig {
     /// Discount γ, in [0, 1).
     #[serde(default = "default_gamma")]
     pub gamma: f32,
+    /// Steps whose rewards are summed before the target network's value takes over, 1..=100; 1 in the paper.
+    #[serde(default = "default_n_step")]
+    pub n_step: u32,
     /// Let the online network choose the action whose target value is bootstrapped (double DQN).
     #[serde(default = "default_double")]
     pub double: bool,
@@ -135,6 +138,9 @@ fn default_learning_rate() -> f64 {
 fn default_gamma() -> f32 {
     0.99
 }
+fn default_n_step() -> u32 {
+    1
+}
 fn default_double() -> bool {
     true
 }
@@ -145,7 +151,7 @@ fn default_checkpoint_every_steps() -> u64 {
 impl RunConfig {
     /// The part that describes the task.
     pub fn task(&self) -> TaskConfig {
-        TaskConfig { env: self.env.clone(), reward: self.reward.clone(), state: self.state.clone() }
+        TaskConfig { env: self.env.clone(), reward: self.reward.clone(), state: self.state }
     }
 
     /// Checks every range.
@@ -162,9 +168,11 @@ impl RunConfig {
 impl TrainConfig {
     fn validate(&self) -> Result<(), ParamError> {
         match (self.steps, self.episodes) {
-            (None, None) => return Err(invalid("train.steps", "nothing", "the run's length as `steps` or as `episodes`")),
+            (None, None) => {
+                return Err(invalid("train.steps", &"nothing", "the run's length as `steps` or as `episodes`"));
+            }
             (Some(_), Some(_)) => {
-                return Err(invalid("train.episodes", "`steps` and `episodes`", "only one of the two"));
+                return Err(invalid("train.episodes", &"`steps` and `episodes`", "only one of the two"));
             }
             (Some(steps), None) => within("train.steps", steps, 1, u64::MAX)?,
             (None, Some(episodes)) => within("train.episodes", episodes, 1, u64::MAX)?,
@@ -173,7 +181,14 @@ impl TrainConfig {
         within("train.batch_size", self.batch_size as u64, 1, 4096)?;
         let smallest = (self.environments * 4).max(self.batch_size) as u64;
         within("train.replay_steps", self.replay_steps as u64, smallest, 100_000_000)?;
-        within("train.learning_starts", self.learning_starts, (self.environments * 2) as u64, u64::MAX)?;
+        within("train.n_step", self.n_step.into(), 1, 100)?;
+        let rows = self.replay_steps / self.environments;
+        if rows <= self.n_step as usize + 1 {
+            let expected = format!("more than {} steps for each environment", self.n_step + 1);
+            return Err(invalid("train.replay_steps", &format!("{rows} steps for each environment"), &expected));
+        }
+        let complete = (self.environments * (self.n_step as usize + 1)) as u64;
+        within("train.learning_starts", self.learning_starts, complete, u64::MAX)?;
         within("train.steps_per_update", self.steps_per_update, 1, 1_000_000)?;
         within("train.target_every_updates", self.target_every_updates, 1, u64::MAX)?;
         within("train.threads", self.threads as u64, 0, 1024)?;
@@ -183,7 +198,7 @@ impl TrainConfig {
             learning_rate("train.final_learning_rate", rate)?;
         }
         if !(0.0..1.0).contains(&self.gamma) {
-            return Err(invalid("train.gamma", self.gamma, "a discount from 0 up to, but not including, 1"));
+            return Err(invalid("train.gamma", &self.gamma, "a discount from 0 up to, but not including, 1"));
         }
         self.epsilon.validate()
     }
@@ -193,7 +208,7 @@ impl EpsilonConfig {
     fn validate(&self) -> Result<(), ParamError> {
         for (key, value) in [("train.epsilon.start", self.start), ("train.epsilon.end", self.end)] {
             if !(0.0..=1.0).contains(&value) {
-                return Err(invalid(key, value, "a probability from 0 to 1"));
+                return Err(invalid(key, &value, "a probability from 0 to 1"));
             }
         }
         within("train.epsilon.decay_steps", self.decay_steps, 1, u64::MAX)
@@ -208,7 +223,7 @@ impl EvaluationConfig {
 }
 
 fn learning_rate(key: &str, rate: f64) -> Result<(), ParamError> {
-    if rate > 0.0 && rate <= 1.0 { Ok(()) } else { Err(invalid(key, rate, "a number above 0 and at most 1")) }
+    if rate > 0.0 && rate <= 1.0 { Ok(()) } else { Err(invalid(key, &rate, "a number above 0 and at most 1")) }
 }
 
 fn within(key: &str, value: u64, least: u64, most: u64) -> Result<(), ParamError> {
@@ -216,9 +231,9 @@ fn within(key: &str, value: u64, least: u64, most: u64) -> Result<(), ParamError
         return Ok(());
     }
     let expected = if most == u64::MAX { format!("at least {least}") } else { format!("from {least} to {most}") };
-    Err(invalid(key, value, &expected))
+    Err(invalid(key, &value, &expected))
 }
 
-fn invalid(key: &str, got: impl ToString, expected: &str) -> ParamError {
+fn invalid(key: &str, got: &dyn ToString, expected: &str) -> ParamError {
     ParamError::InvalidParam { key: key.to_owned(), got: got.to_string(), expected: expected.to_owned() }
 }

@@ -1,5 +1,6 @@
 //! What can go wrong while learning.
 
+use std::fmt;
 use std::path::PathBuf;
 
 /// An error of the learner, its replay, its checkpoints or its records.
@@ -52,7 +53,7 @@ impl Error {
     }
 
     /// A checkpoint file that does not hold what it should.
-    pub(crate) fn checkpoint(path: impl Into<PathBuf>, got: impl ToString, expected: impl ToString) -> Self {
+    pub(crate) fn checkpoint(path: impl Into<PathBuf>, got: impl fmt::Display, expected: impl fmt::Display) -> Self {
         Self::Checkpoint { path: path.into(), got: got.to_string(), expected: expected.to_string() }
     }
 }

@@ -12,8 +12,9 @@ use crate::learner::{Learner, LearnerSettings};
 use crate::replay::{Batch, Replay};
 use crate::trainer::architecture;
 
-/// Updates and steps that are timed, after one that is not.
-const TIMED: u32 = 5;
+/// Calls that are not timed, and those that are.
+const UNTIMED: usize = 3;
+const TIMED: usize = 9;
 
 /// Memory and time of a run.
 #[derive(Debug, Clone, Copy)]
@@ -36,8 +37,7 @@ impl Estimate {
         let mut task = Task::new(&config.task(), goal)?;
         let architecture = architecture(&task)?;
         let frame_len = task.observation().len();
-        let settings =
-            LearnerSettings { gamma: train.gamma, double: train.double, target_every_updates: train.target_every_updates };
+        let settings = LearnerSettings { double: train.double, target_every_updates: train.target_every_updates };
         let mut learner = Learner::new(architecture, settings, device, &mut stream(0, "estimate", 0))?;
 
         let count = train.batch_size;
@@ -46,7 +46,7 @@ impl Estimate {
             next_states: vec![0; count * frame_len],
             actions: vec![0; count],
             rewards: vec![0.0; count],
-            continues: vec![1.0; count],
+            discounts: vec![train.gamma; count],
         };
         let update_s = seconds_each(|| learner.update(&batch, 1e-4).map(drop))?;
         let states = vec![0; train.environments * frame_len];
@@ -57,8 +57,7 @@ impl Estimate {
         })?;
         let steps = train.steps.or(train.episodes.map(|episodes| episodes * u64::from(task.spec().limit_steps)));
         let steps = steps.unwrap_or(0);
-        let seconds_a_step =
-            update_s / train.steps_per_update as f64 + acting_s / train.environments as f64 + step_s;
+        let seconds_a_step = update_s / train.steps_per_update as f64 + acting_s / train.environments as f64 + step_s;
         Ok(Self {
             replay_bytes: Replay::memory_bytes(train.replay_steps, train.environments, frame_len),
             steps,
@@ -67,11 +66,15 @@ impl Estimate {
     }
 }
 
+/// The median time of some calls, after a few that are not counted: the first ones plan and allocate.
 fn seconds_each(mut work: impl FnMut() -> Result<()>) -> Result<f64> {
-    work()?;
-    let start = Instant::now();
-    for _ in 0..TIMED {
+    let mut times = Vec::with_capacity(UNTIMED + TIMED);
+    for _ in 0..UNTIMED + TIMED {
+        let start = Instant::now();
         work()?;
+        times.push(start.elapsed().as_secs_f64());
     }
-    Ok(start.elapsed().as_secs_f64() / f64::from(TIMED))
+    let timed = &mut times[UNTIMED..];
+    timed.sort_by(f64::total_cmp);
+    Ok(timed[TIMED / 2])
 }

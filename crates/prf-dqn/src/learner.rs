@@ -22,8 +22,6 @@ pub struct Learner {
 /// What of the configuration concerns an update.
 #[derive(Debug, Clone, Copy)]
 pub struct LearnerSettings {
-    /// Discount γ.
-    pub gamma: f32,
     /// Double DQN.
     pub double: bool,
     /// Updates between copies to the target network.
@@ -50,7 +48,7 @@ impl Learner {
     }
 
     /// Learns from a batch and returns its loss: the mean Huber loss (δ = 1) of
-    /// `r + γ·Q_target(s′, a′) − Q(s, a)`, with `a′` the best action of the online network (double) or of the target.
+    /// `r + γⁿ·Q_target(s′, a′) − Q(s, a)`, with `a′` the best action of the online network (double) or of the target.
     pub fn update(&mut self, batch: &Batch, learning_rate: f64) -> Result<f32> {
         let states = self.online.pictures(&batch.states, batch.len())?;
         let next_states = self.online.pictures(&batch.next_states, batch.len())?;
@@ -77,9 +75,8 @@ impl Learner {
         } else {
             next_values.f_amax([1i64], false)?
         };
-        let discounts: Vec<f32> = batch.continues.iter().map(|continues| continues * self.settings.gamma).collect();
         let rewards = Tensor::f_from_slice(&batch.rewards)?.f_to_device(self.device)?;
-        let discounts = Tensor::f_from_slice(&discounts)?.f_to_device(self.device)?;
+        let discounts = Tensor::f_from_slice(&batch.discounts)?.f_to_device(self.device)?;
         Ok(rewards.f_addcmul(&discounts, &best)?)
     }
 }
@@ -100,7 +97,7 @@ mod tests {
 
     fn learner(double: bool) -> Learner {
         let architecture = Architecture { input: [84, 84], actions: 3 };
-        let settings = LearnerSettings { gamma: 0.9, double, target_every_updates: 1000 };
+        let settings = LearnerSettings { double, target_every_updates: 1000 };
         Learner::new(architecture, settings, Device::Cpu, &mut stream(3, "network", 0)).expect("learner")
     }
 
@@ -112,7 +109,7 @@ mod tests {
             next_states: pictures(),
             actions: vec![0, 1, 2, 1],
             rewards: vec![1.0, -0.5, 0.0, 20.0],
-            continues: vec![1.0, 1.0, 0.0, 1.0],
+            discounts: vec![0.9, 0.81, 0.0, 0.9],
         }
     }
 
@@ -140,7 +137,7 @@ mod tests {
             let chooser = if double { &online } else { &slow };
             let mut expected = 0.0;
             for (row, best) in greedy_actions(chooser, 3).enumerate() {
-                let target = batch.rewards[row] + 0.9 * batch.continues[row] * slow[row * 3 + best];
+                let target = batch.rewards[row] + batch.discounts[row] * slow[row * 3 + best];
                 let error = (target - now[row * 3 + batch.actions[row] as usize]).abs();
                 expected += if error < 1.0 { 0.5 * error * error } else { error - 0.5 } / 4.0;
             }
@@ -153,7 +150,7 @@ mod tests {
     fn updates_fit_the_batch_and_the_target_follows_when_due() {
         let mut learner = learner(true);
         learner.settings.target_every_updates = 30;
-        let batch = Batch { continues: vec![0.0; 4], ..batch() };
+        let batch = Batch { discounts: vec![0.0; 4], ..batch() };
         let before = learner.target.to_vec().expect("values");
         let losses: Vec<f32> = (0..29).map(|_| learner.update(&batch, 1e-3).expect("update")).collect();
         assert!(losses[28] < 0.5 * losses[0], "the loss went from {} to {}", losses[0], losses[28]);

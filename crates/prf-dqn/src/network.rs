@@ -57,7 +57,7 @@ pub struct QNetwork {
 impl QNetwork {
     /// A network whose weights are uniform in ±√(6/fan-in) (He et al., 2015), drawn from `rng`, and whose biases are 0.
     ///
-    /// PyTorch's default is 2.4 times smaller and lets the trace of a ball of four pixels fade from layer to layer.
+    /// This keeps the scale of the activations from layer to layer, which PyTorch's default, 2.4 times smaller, lets fade.
     pub fn new(architecture: Architecture, device: Device, rng: &mut ChaCha8Rng) -> Result<Self> {
         let mut values = Vec::new();
         for (name, shape) in architecture.parameters() {
@@ -108,7 +108,8 @@ impl QNetwork {
     /// `count` pictures of h × w bytes each as the network's input, f32 in [0, 1], shape [count, 1, h, w].
     pub fn pictures(&self, bytes: &[u8], count: usize) -> Result<Tensor> {
         let [height, width] = self.architecture.input;
-        let bytes = Tensor::f_from_slice(bytes)?.f_to_device(self.device())?.f_view([count as i64, 1, height, width])?;
+        let bytes =
+            Tensor::f_from_slice(bytes)?.f_to_device(self.device())?.f_view([count as i64, 1, height, width])?;
         Ok(bytes.f_to_kind(Kind::Float)?.f_mul_scalar_(1.0 / 255.0)?)
     }
 

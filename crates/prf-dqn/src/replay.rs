@@ -33,14 +33,23 @@ impl Outcome {
 pub struct Batch {
     /// States, n × h × w bytes.
     pub states: Vec<u8>,
-    /// The states that followed, n × h × w bytes; after a terminal step, the state itself.
+    /// The states to bootstrap from, n × h × w bytes; where nothing is bootstrapped, the state itself.
     pub next_states: Vec<u8>,
     /// Actions, n.
     pub actions: Vec<i64>,
-    /// Rewards, n.
+    /// Discounted sums of the rewards up to the state to bootstrap from, n.
     pub rewards: Vec<f32>,
-    /// 1 where the value of the next state counts, 0 after a terminal step, n.
-    pub continues: Vec<f32>,
+    /// What the value of that state counts: γ to the power of the steps in between, 0 after a terminal step, n.
+    pub discounts: Vec<f32>,
+}
+
+/// How far a transition reaches.
+#[derive(Debug, Clone, Copy)]
+pub struct Reach {
+    /// Steps whose rewards are summed before the value of a state takes over, at least 1; fewer where an episode ends.
+    pub steps: u32,
+    /// Discount γ.
+    pub gamma: f32,
 }
 
 /// The replay memory of all environments.
@@ -101,8 +110,8 @@ impl Replay {
 
     /// Fills `batch` with `count` transitions, each drawn uniformly from those in memory.
     ///
-    /// At least one transition must be complete, which is so after two steps of any environment.
-    pub fn sample(&self, count: usize, rng: &mut ChaCha8Rng, batch: &mut Batch) {
+    /// At least one transition must be complete: some environment has taken more than `reach.steps` steps.
+    pub fn sample(&self, count: usize, reach: Reach, rng: &mut ChaCha8Rng, batch: &mut Batch) {
         batch.clear();
         while batch.actions.len() < count {
             let lane = &self.lanes[below(rng, self.lanes.len())];
@@ -111,20 +120,19 @@ impl Replay {
                 continue;
             }
             let row = lane.written - 1 - below(rng, held) as u64;
-            if let Some(next) = lane.next_row(row) {
-                self.copy_into(batch, lane, row, next);
+            if let Some(transition) = lane.transition(row, reach) {
+                self.copy_into(batch, lane, row, transition);
             }
         }
     }
 
-    fn copy_into(&self, batch: &mut Batch, lane: &Lane, row: u64, next: u64) {
-        let at = |row: u64| (row % self.rows_per_lane as u64) as usize;
-        let frame = |row: u64| &lane.frames[at(row) * self.frame_len..][..self.frame_len];
+    fn copy_into(&self, batch: &mut Batch, lane: &Lane, row: u64, transition: Transition) {
+        let frame = |row: u64| &lane.frames[lane.at(row) * self.frame_len..][..self.frame_len];
         batch.states.extend_from_slice(frame(row));
-        batch.next_states.extend_from_slice(frame(next));
-        batch.actions.push(lane.actions[at(row)].into());
-        batch.rewards.push(lane.rewards[at(row)]);
-        batch.continues.push(if lane.outcomes[at(row)] == Outcome::Terminated { 0.0 } else { 1.0 });
+        batch.next_states.extend_from_slice(frame(transition.next));
+        batch.actions.push(lane.actions[lane.at(row)].into());
+        batch.rewards.push(transition.reward);
+        batch.discounts.push(transition.discount);
     }
 
     /// Number of environments.
@@ -144,15 +152,37 @@ impl Replay {
     }
 }
 
+/// Where an action led.
+#[derive(Clone, Copy)]
+struct Transition {
+    next: u64,
+    reward: f32,
+    discount: f32,
+}
+
 impl Lane {
-    /// The row that holds the state after `row`, or none when `row` is no finished transition.
-    fn next_row(&self, row: u64) -> Option<u64> {
-        let at = (row % self.outcomes.len() as u64) as usize;
-        match self.outcomes[at] {
-            Outcome::LastState => None,
-            Outcome::Terminated => Some(row),
-            Outcome::Continued | Outcome::Truncated => (row + 1 < self.written).then_some(row + 1),
+    fn at(&self, row: u64) -> usize {
+        (row % self.outcomes.len() as u64) as usize
+    }
+
+    /// What came of the action of `row`, or none when `row` has no action or its future is not yet known.
+    fn transition(&self, row: u64, reach: Reach) -> Option<Transition> {
+        let (mut reward, mut discount) = (0.0, 1.0);
+        for next in row..row + u64::from(reach.steps) {
+            let outcome = self.outcomes[self.at(next)];
+            if outcome == Outcome::LastState {
+                return None;
+            }
+            reward += discount * self.rewards[self.at(next)];
+            discount *= reach.gamma;
+            match outcome {
+                Outcome::Terminated => return Some(Transition { next: row, reward, discount: 0.0 }),
+                Outcome::Truncated => return Some(Transition { next: next + 1, reward, discount }),
+                _ if next + 1 == self.written => return None,
+                _ => {}
+            }
         }
+        Some(Transition { next: row + u64::from(reach.steps), reward, discount })
     }
 }
 
@@ -162,7 +192,7 @@ impl Batch {
         self.next_states.clear();
         self.actions.clear();
         self.rewards.clear();
-        self.continues.clear();
+        self.discounts.clear();
     }
 
     /// Number of transitions.
@@ -181,6 +211,8 @@ mod tests {
     use super::*;
     use prf_envs::rng::stream;
 
+    const REACH: Reach = Reach { steps: 1, gamma: 0.5 };
+
     /// One-pixel frames; the pixel counts the steps of the lane, so that a next state can be told from any other.
     fn filled(rows: usize, episode: usize, end: Outcome) -> Replay {
         let mut replay = Replay::new(rows, 1, 1);
@@ -196,7 +228,7 @@ mod tests {
 
     fn draw(replay: &Replay, count: usize) -> Batch {
         let mut batch = Batch::default();
-        replay.sample(count, &mut stream(0, "test", 0), &mut batch);
+        replay.sample(count, REACH, &mut stream(0, "test", 0), &mut batch);
         batch
     }
 
@@ -207,7 +239,7 @@ mod tests {
             assert_eq!(batch.next_states[index], batch.states[index] + 1);
             assert_eq!(i64::from(batch.states[index]), batch.actions[index]);
             assert_eq!(f32::from(batch.states[index]), batch.rewards[index]);
-            assert_eq!(batch.continues[index], 1.0);
+            assert_eq!(batch.discounts[index], 0.5);
         }
         // The newest row has no successor yet; every other row is drawn.
         let drawn: std::collections::BTreeSet<u8> = batch.states.iter().copied().collect();
@@ -219,7 +251,7 @@ mod tests {
         let batch = draw(&filled(64, 5, Outcome::Terminated), 500);
         for index in 0..batch.len() {
             let terminal = batch.states[index] % 5 == 4;
-            assert_eq!(batch.continues[index], if terminal { 0.0 } else { 1.0 });
+            assert_eq!(batch.discounts[index], if terminal { 0.0 } else { 0.5 });
         }
     }
 
@@ -230,7 +262,31 @@ mod tests {
         for index in 0..batch.len() {
             let state = batch.states[index];
             assert_eq!(batch.next_states[index], if state % 5 == 4 { 100 + state } else { state + 1 });
-            assert_eq!(batch.continues[index], 1.0);
+            assert_eq!(batch.discounts[index], 0.5);
+        }
+    }
+
+    #[test]
+    fn longer_reaches_sum_discounted_rewards_up_to_the_end_of_the_episode() {
+        for (end, last_discount) in [(Outcome::Terminated, 0.0), (Outcome::Truncated, 0.5)] {
+            let replay = filled(64, 5, end);
+            let mut batch = Batch::default();
+            replay.sample(500, Reach { steps: 3, gamma: 0.5 }, &mut stream(0, "test", 0), &mut batch);
+            for index in 0..batch.len() {
+                let (state, left) = (f32::from(batch.states[index]), 5 - batch.states[index] % 5);
+                let (reward, discount) = match left {
+                    1 => (state, last_discount),
+                    2 => (state + 0.5 * (state + 1.0), last_discount / 2.0),
+                    3 => (state + 0.5 * (state + 1.0) + 0.25 * (state + 2.0), last_discount / 4.0),
+                    _ => (state + 0.5 * (state + 1.0) + 0.25 * (state + 2.0), 0.125),
+                };
+                assert_eq!((batch.rewards[index], batch.discounts[index]), (reward, discount));
+                if left > 3 {
+                    assert_eq!(batch.next_states[index], batch.states[index] + 3);
+                } else if end == Outcome::Truncated {
+                    assert_eq!(batch.next_states[index], 100 + batch.states[index] + left - 1);
+                }
+            }
         }
     }
 

@@ -13,7 +13,7 @@ use crate::evaluate::{Spread, episode_seeds, play_greedily};
 use crate::learner::{Learner, LearnerSettings, greedy_actions};
 use crate::network::Architecture;
 use crate::record::{EvaluationRecord, Event, JsonlRecorder, Progress, Recorder, TimeShares, TrainRecord, timed};
-use crate::replay::{Batch, Outcome, Replay};
+use crate::replay::{Batch, Outcome, Reach, Replay};
 use crate::run_dir::RunDir;
 use crate::schedule;
 
@@ -47,6 +47,8 @@ pub struct Trainer {
     checkpoints: CheckpointStore,
     /// The replay on disk, as of the last checkpoint.
     segments: Vec<Segment>,
+    /// Steps at the last checkpoint.
+    saved_at: Option<u64>,
     /// Reused by every step and update.
     states: Vec<u8>,
     batch: Batch,
@@ -100,11 +102,8 @@ impl Trainer {
             .collect::<Result<Vec<_>>>()?;
         let evaluation_tasks = (0..config.evaluation.episodes).map(|_| make()).collect::<Result<Vec<_>>>()?;
         let architecture = architecture(&evaluation_tasks[0])?;
-        let settings = LearnerSettings {
-            gamma: config.train.gamma,
-            double: config.train.double,
-            target_every_updates: config.train.target_every_updates,
-        };
+        let settings =
+            LearnerSettings { double: config.train.double, target_every_updates: config.train.target_every_updates };
         let frame_len = (architecture.input[0] * architecture.input[1]) as usize;
         Ok(Self {
             evaluation_seeds: episode_seeds(0, "evaluation", config.evaluation.episodes),
@@ -116,6 +115,7 @@ impl Trainer {
             metrics: JsonlRecorder::open(&run.metrics_path())?,
             checkpoints: CheckpointStore::open(run.path())?,
             segments: Vec::new(),
+            saved_at: None,
             states: Vec::new(),
             batch: Batch::default(),
             time: TimeShares::default(),
@@ -127,7 +127,7 @@ impl Trainer {
         })
     }
 
-    /// Trains to the end of the run, or until `stop` says so; then everything is saved, and [`Trainer::resume`] goes on.
+    /// Trains to the end of the run, or until `stop` says so; then everything is saved, and [`Trainer::open`] goes on.
     ///
     /// # Errors
     /// When something cannot be written; what was written before stays.
@@ -170,11 +170,10 @@ impl Trainer {
     /// One ε-greedy step of every environment.
     fn step_worlds(&mut self) -> Result<()> {
         let actions = self.choose_actions()?;
-        for (index, (lane, action)) in self.lanes.iter_mut().zip(actions).enumerate() {
-            // The state acted in is overwritten by the step, so it goes into the replay from the batch made of it.
+        // The states acted in: the step overwrites the tasks' own.
+        let states = self.states.chunks_exact(self.states.len() / self.lanes.len());
+        for (index, ((lane, state), action)) in self.lanes.iter_mut().zip(states).zip(actions).enumerate() {
             let step = timed(&mut self.time.worlds_s, || lane.task.step(action))?;
-            let state = &self.states[index * self.states.len() / self.config.train.environments..];
-            let state = &state[..lane.task.observation().len()];
             let outcome = match step.status {
                 Status::Running => Outcome::Continued,
                 Status::Terminated => Outcome::Terminated,
@@ -216,9 +215,10 @@ impl Trainer {
         let train = &self.config.train;
         let due = self.counters.steps.saturating_sub(train.learning_starts) / train.steps_per_update;
         let rate = schedule::learning_rate(train, self.done());
+        let (size, reach) = (train.batch_size, Reach { steps: train.n_step, gamma: train.gamma });
         while self.learner.updates < due {
             timed(&mut self.time.replay_s, || {
-                self.replay.sample(self.config.train.batch_size, &mut self.sampling, &mut self.batch);
+                self.replay.sample(size, reach, &mut self.sampling, &mut self.batch);
             });
             let loss = timed(&mut self.time.updates_s, || self.learner.update(&self.batch, rate))?;
             self.counters.window.add_loss(loss);
@@ -228,7 +228,7 @@ impl Trainer {
 
     /// Records the training episodes since the last evaluation, then plays the greedy policy.
     fn evaluate(&mut self, recorder: &mut dyn Recorder) -> Result<()> {
-        self.tell(recorder, Event::Train(self.train_record()))?;
+        self.tell(recorder, &Event::Train(self.train_record()))?;
         self.counters.window = Window::default();
 
         let network = &self.learner.online;
@@ -240,7 +240,7 @@ impl Trainer {
         let score = Spread::of(episodes.iter().map(|episode| f64::from(episode.score)));
         self.tell(
             recorder,
-            Event::Evaluation(EvaluationRecord {
+            &Event::Evaluation(EvaluationRecord {
                 step: self.counters.steps,
                 episode: self.counters.episodes,
                 episodes: episodes.len(),
@@ -262,9 +262,9 @@ impl Trainer {
         Ok(())
     }
 
-    fn tell(&mut self, recorder: &mut dyn Recorder, event: Event) -> Result<()> {
-        self.metrics.record(&event)?;
-        recorder.record(&event)
+    fn tell(&mut self, recorder: &mut dyn Recorder, event: &Event) -> Result<()> {
+        self.metrics.record(event)?;
+        recorder.record(event)
     }
 
     fn elapsed_s(&self) -> f64 {

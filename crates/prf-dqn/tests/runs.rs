@@ -55,11 +55,8 @@ fn config() -> RunConfig {
 fn open(config: &RunConfig, dir: &Path) -> prf_dqn::Result<Trainer> {
     set_threads(config);
     let goal = Frame::new(84, 84);
-    let run = if dir.join("config.toml").exists() {
-        RunDir::at(dir)
-    } else {
-        RunDir::create(dir, config, Some(&goal))?
-    };
+    let run =
+        if dir.join("config.toml").exists() { RunDir::at(dir) } else { RunDir::create(dir, config, Some(&goal))? };
     Trainer::open(config.clone(), Some(&goal), &run, tch::Device::Cpu)
 }
 
@@ -94,7 +91,8 @@ fn newest_checkpoint(dir: &Path) -> std::path::PathBuf {
 
 #[test]
 fn the_same_seed_gives_the_same_run_and_another_seed_another() {
-    let (first, second, other) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let (first, second, other) =
+        (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
     assert_eq!(train(&config(), first.path(), usize::MAX), Ending::Finished);
     train(&config(), second.path(), usize::MAX);
     train(&RunConfig { seed: 8, ..config() }, other.path(), usize::MAX);

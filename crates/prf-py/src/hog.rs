@@ -4,10 +4,11 @@ use numpy::{IntoPyArray, PyArrayDyn, prelude::*};
 use prf_core::{Error, FrameView, Hog, HogLayout, HogParams, PlaneView};
 use pyo3::prelude::*;
 
+use crate::arg::Arg;
 use crate::error::value_error;
 use crate::image::{Image, Pixels};
 use crate::limits::check_features;
-use crate::options::{Count, HogOptions};
+use crate::options::HogOptions;
 
 /// Histograms of oriented gradients of a grey picture.
 ///
@@ -59,8 +60,8 @@ use crate::options::{Count, HogOptions};
 #[pyfunction]
 #[pyo3(
     signature = (
-        image, *, orientations=Count::Is(9), signed=false, cell=None, cell_px=None, block_cells=Count::Is(1),
-        norm="l2", feature_vector=true
+        image, *, orientations=Arg::of(9), signed=Arg::of(false), cell=None, cell_px=None, block_cells=Arg::of(1),
+        norm=Arg::of("l2".into()), feature_vector=Arg::of(true)
     ),
     text_signature = "(image, *, orientations=9, signed=False, cell=None, cell_px=None, block_cells=1, \
                       norm='l2', feature_vector=True)"
@@ -68,15 +69,16 @@ use crate::options::{Count, HogOptions};
 #[expect(clippy::too_many_arguments, reason = "keyword arguments in Python")]
 pub(crate) fn hog<'py>(
     image: &Bound<'py, PyAny>,
-    orientations: Count,
-    signed: bool,
-    cell: Option<f32>,
-    cell_px: Option<Count>,
-    block_cells: Count,
-    norm: &str,
-    feature_vector: bool,
+    orientations: Arg<usize>,
+    signed: Arg<bool>,
+    cell: Option<Arg<f32>>,
+    cell_px: Option<Arg<usize>>,
+    block_cells: Arg<usize>,
+    norm: Arg<String>,
+    feature_vector: Arg<bool>,
 ) -> PyResult<Bound<'py, PyArrayDyn<f32>>> {
     let params = HogOptions { orientations, signed, cell, cell_px, block_cells, norm }.params()?;
+    let feature_vector = feature_vector.get("feature_vector")?;
     let py = image.py();
     let image = Image::read("image", image)?;
     let (shape, pixels) = (image.shape(), image.pixels()?);
@@ -91,11 +93,7 @@ pub(crate) fn hog<'py>(
     Ok(features.reshape([rows, columns, block, block, layout.orientations()])?.to_dyn().clone())
 }
 
-fn compute(
-    params: HogParams,
-    [height, width]: [usize; 2],
-    pixels: Pixels<'_>,
-) -> Result<(Vec<f32>, HogLayout), Error> {
+fn compute(params: HogParams, [height, width]: [usize; 2], pixels: Pixels<'_>) -> Result<(Vec<f32>, HogLayout), Error> {
     let mut hog = Hog::new(params)?;
     let mut features = Vec::new();
     let layout = match pixels {

@@ -3,6 +3,7 @@
 //!
 //! Docs of functions are their docstrings. `python/prf/_native.pyi` has their types.
 
+mod arg;
 mod error;
 mod hog;
 mod image;

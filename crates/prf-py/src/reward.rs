@@ -1,12 +1,13 @@
 //! `prf.reward` and `prf.distance`
 
-use prf_core::{DirectDescriptor, Frame, FrameView, RewardParams, Score, TaskDescriptor, crop_box};
+use prf_core::{DirectDescriptor, FrameView, RewardParams, Score, TaskDescriptor, crop_box};
 use pyo3::prelude::*;
 
+use crate::arg::Arg;
 use crate::error::value_error;
 use crate::image::Array;
 use crate::limits::check_features;
-use crate::options::{Count, HogOptions, choice};
+use crate::options::{HogOptions, choice};
 
 /// How much a frame looks like the goal: ``exp(-distance(goal, frame, ...))``.
 ///
@@ -32,8 +33,8 @@ use crate::options::{Count, HogOptions, choice};
 #[pyfunction]
 #[pyo3(
     signature = (
-        goal, frame, *, orientations=Count::Is(9), signed=false, cell=None, cell_px=None,
-        block_cells=Count::Is(1), norm="l2", scale="sqrt-blocks"
+        goal, frame, *, orientations=Arg::of(9), signed=Arg::of(false), cell=None, cell_px=None,
+        block_cells=Arg::of(1), norm=Arg::of("l2".into()), scale=Arg::of("sqrt-blocks".into())
     ),
     text_signature = "(goal, frame, *, orientations=9, signed=False, cell=None, cell_px=None, block_cells=1, \
                       norm='l2', scale='sqrt-blocks')"
@@ -42,13 +43,13 @@ use crate::options::{Count, HogOptions, choice};
 pub(crate) fn reward(
     goal: &Bound<'_, PyAny>,
     frame: &Bound<'_, PyAny>,
-    orientations: Count,
-    signed: bool,
-    cell: Option<f32>,
-    cell_px: Option<Count>,
-    block_cells: Count,
-    norm: &str,
-    scale: &str,
+    orientations: Arg<usize>,
+    signed: Arg<bool>,
+    cell: Option<Arg<f32>>,
+    cell_px: Option<Arg<usize>>,
+    block_cells: Arg<usize>,
+    norm: Arg<String>,
+    scale: Arg<String>,
 ) -> PyResult<f32> {
     let hog = HogOptions { orientations, signed, cell, cell_px, block_cells, norm };
     Ok(score(goal, frame, hog, scale)?.reward)
@@ -96,8 +97,8 @@ pub(crate) fn reward(
 #[pyfunction]
 #[pyo3(
     signature = (
-        goal, frame, *, orientations=Count::Is(9), signed=false, cell=None, cell_px=None,
-        block_cells=Count::Is(1), norm="l2", scale="sqrt-blocks"
+        goal, frame, *, orientations=Arg::of(9), signed=Arg::of(false), cell=None, cell_px=None,
+        block_cells=Arg::of(1), norm=Arg::of("l2".into()), scale=Arg::of("sqrt-blocks".into())
     ),
     text_signature = "(goal, frame, *, orientations=9, signed=False, cell=None, cell_px=None, block_cells=1, \
                       norm='l2', scale='sqrt-blocks')"
@@ -106,19 +107,19 @@ pub(crate) fn reward(
 pub(crate) fn distance(
     goal: &Bound<'_, PyAny>,
     frame: &Bound<'_, PyAny>,
-    orientations: Count,
-    signed: bool,
-    cell: Option<f32>,
-    cell_px: Option<Count>,
-    block_cells: Count,
-    norm: &str,
-    scale: &str,
+    orientations: Arg<usize>,
+    signed: Arg<bool>,
+    cell: Option<Arg<f32>>,
+    cell_px: Option<Arg<usize>>,
+    block_cells: Arg<usize>,
+    norm: Arg<String>,
+    scale: Arg<String>,
 ) -> PyResult<f32> {
     let hog = HogOptions { orientations, signed, cell, cell_px, block_cells, norm };
     Ok(score(goal, frame, hog, scale)?.distance)
 }
 
-fn score(goal: &Bound<'_, PyAny>, frame: &Bound<'_, PyAny>, hog: HogOptions<'_>, scale: &str) -> PyResult<Score> {
+fn score(goal: &Bound<'_, PyAny>, frame: &Bound<'_, PyAny>, hog: HogOptions, scale: Arg<String>) -> PyResult<Score> {
     let params = RewardParams { hog: hog.params()?, scale: choice("scale", scale)? };
     let py = goal.py();
     let (goal, frame) = (Array::read("goal", goal)?, Array::read("frame", frame)?);

@@ -29,7 +29,7 @@ pub(crate) fn run(args: &TrainArgs, printer: &mut Printer) -> Result<ExitStatus>
     let outcome = (|| {
         let mut trainer = Trainer::open(loaded.config, loaded.goal.as_ref(), &run, device)?;
         let resumed = if trainer.steps() > 0 { format!(", from step {}", trainer.steps()) } else { String::new() };
-        printer.note(format!("seed {seed}, {threads} threads, run folder {}{resumed}", run.path().display()));
+        printer.note(format!("seed {seed}, threads {threads}, run folder {}{resumed}", run.path().display()));
         let mut reporter = ProgressReporter::new();
         let stop = stop_on_interrupt()?;
         let ending = trainer.run(&mut reporter, &|| stop.load(Ordering::Relaxed));

@@ -7,38 +7,6 @@
 //! matters: on the only borders with rational cotangents, 45°, 90° and 135°, which differences of
 //! bytes do hit, and where `dy` is 0 (infinite, so below every border).
 
-/// A border between two bins.
-#[derive(Clone, Copy, Debug)]
-struct Border {
-    /// Of the border, turned into the upper half plane.
-    cotangent: f32,
-    /// Whether it lies at 180° or beyond.
-    beyond: bool,
-}
-
-impl Border {
-    fn at(degrees: f64) -> Border {
-        let beyond = degrees >= 180.0;
-        let turned = if beyond { degrees - 180.0 } else { degrees };
-        let (sin, cos) = turned.to_radians().sin_cos();
-        // At 90° the cosine comes out as 6e-17, and at 45° the two differ by a bit.
-        let cotangent = if sin == 0.0 { f64::INFINITY } else { (cos / sin * 1e12).round() / 1e12 };
-        Border { cotangent: cotangent as f32, beyond }
-    }
-
-    /// Adds 1 to the bin of every gradient that has reached this border.
-    fn count(self, cotangents: &[f32], below: &[u32], bins: &mut [u32]) {
-        let reached = |cotangent: f32| u32::from(cotangent <= self.cotangent);
-        let gradients = bins.iter_mut().zip(cotangents).zip(below);
-        // The test stands outside of the loop, so that the loop runs on SIMD lanes.
-        if self.beyond {
-            gradients.for_each(|((bin, &c), &below)| *bin += reached(c) & below);
-        } else {
-            gradients.for_each(|((bin, &c), &below)| *bin += reached(c) | below);
-        }
-    }
-}
-
 /// The gradients of one row and the votes that they cast. All have the same length.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Votes {
@@ -50,8 +18,10 @@ pub(super) struct Votes {
     pub(super) place: Vec<u32>,
     /// The first place of the pixel's cell.
     first: Vec<u32>,
-    /// All ones where a signed gradient pointed below the x axis.
-    below: Vec<u32>,
+    /// The cotangent, as the borders in the upper half plane see it.
+    above: Vec<f32>,
+    /// The cotangent, as the borders at 180° and beyond see it.
+    beyond: Vec<f32>,
 }
 
 impl Votes {
@@ -62,46 +32,95 @@ impl Votes {
         self.dy.resize(len, 0.0);
         self.weight.resize(len, 0.0);
         self.place.resize(len, 0);
-        self.below.resize(len, 0);
+        self.above.resize(len, 0.0);
+        self.beyond.resize(len, 0.0);
         self.first.clear();
         let places = (0..cells * orientations).step_by(orientations);
         self.first.extend(places.flat_map(|first| std::iter::repeat_n(first as u32, cell_px)));
     }
 
-    /// Weighs the gradients, turns them into the upper half plane and leaves their cotangents in `dx`.
-    fn prepare(&mut self, signed: bool) {
-        let signed = u32::from(signed);
-        let gradients = self.dx.iter_mut().zip(&self.dy);
-        let votes = self.weight.iter_mut().zip(&mut self.below);
-        for ((x, &y), (weight, below)) in gradients.zip(votes) {
-            *weight = (*x * *x + y * y).sqrt();
-            *below = u32::from((y < 0.0) | ((y == 0.0) & (*x < 0.0))) & signed;
-            // Turning changes both signs, so their ratio stays, except for that of infinity.
-            *x = if y == 0.0 { f32::INFINITY } else { *x / y };
+    fn weigh(&mut self) {
+        for ((weight, x), y) in self.weight.iter_mut().zip(&self.dx).zip(&self.dy) {
+            *weight = (x * x + y * y).sqrt();
         }
-        self.place.copy_from_slice(&self.first);
+    }
+
+    /// Cotangents of directions of which opposite ones are the same.
+    fn turn_unsigned(&mut self) {
+        for ((above, &x), &y) in self.above.iter_mut().zip(&self.dx).zip(&self.dy) {
+            *above = cotangent(x, y);
+        }
+    }
+
+    /// Cotangents of directions all around: one below the x axis has reached every border above it.
+    fn turn_signed(&mut self) {
+        let seen = self.above.iter_mut().zip(&mut self.beyond);
+        for (((above, beyond), &x), &y) in seen.zip(&self.dx).zip(&self.dy) {
+            let turned = (y < 0.0) | ((y == 0.0) & (x < 0.0));
+            *above = if turned { f32::NEG_INFINITY } else { cotangent(x, y) };
+            *beyond = if turned { cotangent(x, y) } else { f32::NAN };
+        }
     }
 }
 
-/// The borders of a HOG's bins.
+/// Turning a direction around changes the signs of both, so their ratio stays.
+fn cotangent(x: f32, y: f32) -> f32 {
+    // Infinite where y is 0, and never minus that. Chosen before dividing, SIMD lanes need not part.
+    let x = if y == 0.0 { x.abs() } else { x };
+    x / y
+}
+
+/// The borders of a HOG's bins, by their cotangents once turned into the upper half plane.
 #[derive(Clone, Debug)]
 pub(super) struct Bins {
-    borders: Vec<Border>,
     signed: bool,
+    above: Vec<f32>,
+    /// Those at 180° or beyond.
+    beyond: Vec<f32>,
 }
 
 impl Bins {
     pub(super) fn new(orientations: usize, signed: bool) -> Bins {
         let span = if signed { 360.0 } else { 180.0 };
-        let border = |k| Border::at(span * k as f64 / orientations as f64);
-        Bins { borders: (1..orientations).map(border).collect(), signed }
+        let degrees = (1..orientations).map(|k| span * k as f64 / orientations as f64);
+        let (above, beyond): (Vec<_>, Vec<_>) = degrees.partition(|&degrees| degrees < 180.0);
+        Bins {
+            signed,
+            above: above.into_iter().map(border).collect(),
+            beyond: beyond.into_iter().map(|degrees| border(degrees - 180.0)).collect(),
+        }
     }
 
-    /// From the gradients of a row to its votes; the gradients are used up.
+    /// From the gradients of a row to its votes.
     pub(super) fn assign(&self, row: &mut Votes) {
-        row.prepare(self.signed);
-        for border in &self.borders {
-            border.count(&row.dx, &row.below, &mut row.place);
+        row.weigh();
+        row.place.copy_from_slice(&row.first);
+        if self.signed {
+            row.turn_signed();
+            count(&self.beyond, &row.beyond, &mut row.place);
+        } else {
+            row.turn_unsigned();
+        }
+        count(&self.above, &row.above, &mut row.place);
+    }
+}
+
+/// Cotangent of an angle from 0 up to 180 degrees.
+fn border(degrees: f64) -> f32 {
+    let (sin, cos) = degrees.to_radians().sin_cos();
+    if sin == 0.0 {
+        return f32::INFINITY;
+    }
+    // At 90° the cosine comes out as 6e-17, and at 45° the two differ by a bit.
+    ((cos / sin * 1e12).round() / 1e12) as f32
+}
+
+/// Adds to each place how many borders its cotangent has reached.
+fn count(borders: &[f32], cotangents: &[f32], places: &mut [u32]) {
+    // Border by border over a row that stays in cache: such a loop runs on SIMD lanes.
+    for &border in borders {
+        for (place, &cotangent) in places.iter_mut().zip(cotangents) {
+            *place += u32::from(cotangent <= border);
         }
     }
 }

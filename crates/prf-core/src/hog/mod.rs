@@ -44,6 +44,8 @@ pub struct Hog {
 }
 
 impl Hog {
+    /// A HOG with these parameters, for pictures of any size.
+    ///
     /// # Errors
     ///
     /// [`Error::InvalidParam`] as [`HogParams::validate`].

@@ -10,21 +10,30 @@ const CLIP: f32 = 0.2;
 impl Norm {
     /// Normalises features, block by block.
     pub(super) fn apply(self, features: &mut [f32], block_len: usize) {
-        let blocks = features.chunks_exact_mut(block_len);
         match self {
             Norm::None => {}
-            Norm::L1 => blocks.for_each(|block| scale(block, l1(block))),
-            Norm::L1Sqrt => blocks.for_each(|block| {
+            Norm::L1 => each(features, block_len, |block| scale(block, l1(block))),
+            Norm::L1Sqrt => each(features, block_len, |block| {
                 scale(block, l1(block));
                 block.iter_mut().for_each(|v| *v = v.sqrt());
             }),
-            Norm::L2 => blocks.for_each(|block| scale(block, l2(block))),
-            Norm::L2Hys => blocks.for_each(|block| {
+            Norm::L2 => each(features, block_len, |block| scale(block, l2(block))),
+            Norm::L2Hys => each(features, block_len, |block| {
                 scale(block, l2(block));
                 block.iter_mut().for_each(|v| *v = v.min(CLIP));
                 scale(block, l2(block));
             }),
         }
+    }
+}
+
+fn each(features: &mut [f32], block_len: usize, normalize: impl Fn(&mut [f32])) {
+    // One cell of 9 orientations is the most usual block, and the one that there are the most of:
+    // with its length known, its loops are unrolled.
+    if let (9, (blocks, [])) = (block_len, features.as_chunks_mut::<9>()) {
+        blocks.iter_mut().for_each(|block| normalize(block));
+    } else {
+        features.chunks_exact_mut(block_len).for_each(normalize);
     }
 }
 

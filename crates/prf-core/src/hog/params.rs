@@ -39,6 +39,8 @@ impl Default for HogParams {
 }
 
 impl HogParams {
+    /// Checks every parameter's range.
+    ///
     /// # Errors
     ///
     /// [`Error::InvalidParam`] with the key of the first parameter that is out of range.

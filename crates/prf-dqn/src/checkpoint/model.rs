@@ -99,7 +99,8 @@ impl Model {
         if self.architecture == *expected {
             return Ok(());
         }
-        let describe = |a: &Architecture| format!("a network for {}×{} px and {} actions", a.input[0], a.input[1], a.actions);
+        let describe =
+            |a: &Architecture| format!("a network for {}×{} px and {} actions", a.input[0], a.input[1], a.actions);
         Err(Error::checkpoint(path, describe(&self.architecture), describe(expected)))
     }
 }

@@ -98,9 +98,6 @@ impl CheckpointStore {
         let write = || {
             fs::create_dir_all(&partial).map_err(Error::io("make", &partial))?;
             checkpoint.write(&partial)?;
-            if path.exists() {
-                fs::remove_dir_all(&path).map_err(Error::io("replace", &path))?;
-            }
             fs::rename(&partial, &path).map_err(Error::io("write", &path))?;
             File::open(&self.checkpoints).and_then(|dir| dir.sync_all()).map_err(Error::io("write", &self.checkpoints))
         };

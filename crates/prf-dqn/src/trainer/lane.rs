@@ -1,7 +1,7 @@
 //! One environment of a run and the episode it is in.
 
-use prf_envs::rng::ChaCha8Rng;
 use prf_envs::Task;
+use prf_envs::rng::ChaCha8Rng;
 use rand_core::Rng;
 use serde::{Deserialize, Serialize};
 

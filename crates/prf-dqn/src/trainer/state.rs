@@ -52,8 +52,11 @@ impl Counters {
 }
 
 impl Trainer {
-    /// Writes a checkpoint.
+    /// Writes a checkpoint, unless there is one of this very step.
     pub(super) fn save(&mut self, recorder: &mut dyn Recorder) -> Result<()> {
+        if self.saved_at == Some(self.counters.steps) {
+            return Ok(());
+        }
         let mut time = 0.0;
         timed(&mut time, || self.write_checkpoint())?;
         self.time.checkpoints_s += time;
@@ -93,6 +96,7 @@ impl Trainer {
         };
         self.checkpoints.write(step, &checkpoint, [&segments, &self.segments])?;
         self.segments = segments;
+        self.saved_at = Some(step);
         Ok(())
     }
 
@@ -113,6 +117,7 @@ impl Trainer {
         self.sampling = rng::restore(&checkpoint.blob("rng.replay", &dir)?)?;
         self.checkpoints.read_replay(&state.segments, &mut self.replay)?;
         self.metrics.truncate(state.metrics_bytes)?;
+        self.saved_at = Some(state.counters.steps);
         self.counters = state.counters;
         self.segments = state.segments;
         Ok(())

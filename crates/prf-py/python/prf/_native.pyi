@@ -6,6 +6,8 @@ from numpy.typing import NDArray
 _Norm: TypeAlias = Literal["none", "l1", "l1-sqrt", "l2", "l2-hys"]
 _Scale: TypeAlias = Literal["none", "sqrt-blocks", "sqrt-features"]
 
+__all__ = ["__version__", "distance", "hog", "reward"]
+
 __version__: str
 
 def hog(
