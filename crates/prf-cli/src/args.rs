@@ -76,7 +76,7 @@ pub(crate) struct TrainArgs {
     pub(crate) dry_run: bool,
 }
 
-#[derive(Clone, Copy, Debug, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Device {
     Cpu,
     /// An NVIDIA GPU

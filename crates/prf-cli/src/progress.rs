@@ -1,6 +1,6 @@
 //! How a run is going, told on stderr: a bar on a terminal, plain lines elsewhere.
 
-use std::io::{IsTerminal, stderr};
+use std::io::{IsTerminal, Write, stderr};
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
@@ -39,16 +39,22 @@ impl ProgressReporter {
         let speed = (progress.steps - first) as f64 / self.started.elapsed().as_secs_f64();
         let greedy = progress.evaluation_score.map_or(String::new(), |score| format!(" (greedy {score:.2})"));
         bar.set_position(position(progress));
+        let recent = |value: Option<f64>| value.map_or("–".to_owned(), |value| format!("{value:.2}"));
         bar.set_message(format!(
-            "episode {}  score {:.2}{greedy}  reward {:.2}  ε {:.2}  {speed:.0} steps/s",
-            progress.episodes, progress.recent_score, progress.recent_reward, progress.epsilon
+            "episode {}  score {}{greedy}  reward {}  ε {:.2}  {speed:.0} steps/s",
+            progress.episodes,
+            recent(progress.recent_score),
+            recent(progress.recent_reward),
+            progress.epsilon
         ));
     }
 
     fn evaluation(&self, record: &EvaluationRecord) {
         if self.bar.is_none() {
             let EvaluationRecord { step, episode, mean_score, std_score, mean_reward, .. } = record;
-            eprintln!(
+            // With stderr closed there is nobody to tell, which is no reason to stop.
+            let _ = writeln!(
+                stderr(),
                 "step {step}  episode {episode}  greedy score {mean_score:.2} ± {std_score:.2}  \
                  reward {mean_reward:.2}  {:.0} s",
                 record.time_s

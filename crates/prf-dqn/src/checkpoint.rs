@@ -1,14 +1,14 @@
 //! Everything a run needs to go on, in a directory that is there whole or not at all.
 
 use std::collections::BTreeMap;
-use std::fs::{self, File};
-use std::io::Write;
+use std::fs;
 use std::path::Path;
 
 use safetensors::tensor::TensorView;
 use safetensors::{Dtype, SafeTensors};
 
 use crate::error::{Error, Result};
+use crate::files::write_synced;
 use crate::network::Architecture;
 
 mod model;
@@ -52,7 +52,7 @@ impl Checkpoint {
         }
         let metadata = [(STATE_KEY.to_owned(), self.state.clone())].into();
         let bytes = safetensors::serialize(tensors, Some(metadata)).expect("names are distinct and sizes consistent");
-        write_synced(&path, &bytes)
+        write_synced(&path, &bytes).map_err(Error::io("write", &path))
     }
 
     /// Reads a checkpoint's directory.
@@ -64,7 +64,7 @@ impl Checkpoint {
         let model = Model::read(&dir.join(MODEL_FILE))?;
         model.check(architecture, &dir.join(MODEL_FILE))?;
         let path = dir.join(STATE_FILE);
-        let bytes = fs::read(&path).map_err(Error::io("read", &path))?;
+        let bytes = fs::read(&path).map_err(Error::unreadable(&path))?;
         let whole = "a whole checkpoint of this version";
         let damaged = |error: safetensors::SafeTensorError| Error::checkpoint(&path, error, whole);
         let (_, metadata) = SafeTensors::read_metadata(&bytes).map_err(damaged)?;
@@ -111,14 +111,4 @@ fn f32_bytes(values: &[f32]) -> Vec<u8> {
 
 fn bytes_f32(bytes: &[u8]) -> Vec<f32> {
     bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect()
-}
-
-/// Writes a new file and waits until it is on the disk.
-fn write_synced(path: &Path, bytes: &[u8]) -> Result<()> {
-    let write = || {
-        let mut file = File::create(path)?;
-        file.write_all(bytes)?;
-        file.sync_all()
-    };
-    write().map_err(Error::io("write", path))
 }

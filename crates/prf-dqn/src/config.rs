@@ -45,7 +45,7 @@ pub struct TrainConfig {
     /// Steps that the replay remembers; each costs one byte a pixel.
     #[serde(default = "default_replay_steps")]
     pub replay_steps: usize,
-    /// Steps taken before the first update.
+    /// Steps taken before those that updates are counted from.
     #[serde(default = "default_learning_starts")]
     pub learning_starts: u64,
     /// Steps taken for each update.

@@ -1,15 +1,13 @@
 //! Where the network computes.
 
 use std::fmt;
-use std::str::FromStr;
 
 use crate::error::{Error, Result};
 
 /// A device that the user may name.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Device {
     /// The processor.
-    #[default]
     Cpu,
     /// The first NVIDIA GPU.
     Cuda,
@@ -44,18 +42,5 @@ impl fmt::Display for Device {
             Self::Cuda => "cuda",
             Self::Mps => "mps",
         })
-    }
-}
-
-impl FromStr for Device {
-    type Err = Error;
-
-    fn from_str(name: &str) -> Result<Self> {
-        match name {
-            "cpu" => Ok(Self::Cpu),
-            "cuda" => Ok(Self::Cuda),
-            "mps" => Ok(Self::Mps),
-            _ => Err(Error::Device { got: name.to_owned(), expected: "cpu, cuda or mps".to_owned() }),
-        }
     }
 }

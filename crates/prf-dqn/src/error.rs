@@ -1,7 +1,7 @@
 //! What can go wrong while learning.
 
 use std::fmt;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// An error of the learner, its replay, its checkpoints or its records.
 #[derive(Debug, thiserror::Error)]
@@ -15,6 +15,30 @@ pub enum Error {
     /// libtorch refused a computation.
     #[error("libtorch failed: {0}")]
     Torch(#[from] tch::TchError),
+    /// A checkpoint that is whole, but was made for something else.
+    #[error("{} does not fit: got {got}, expected {expected}", path.display())]
+    Mismatch {
+        /// The file or directory.
+        path: PathBuf,
+        /// What it was made for.
+        got: String,
+        /// What it is wanted for.
+        expected: String,
+    },
+    /// Another process trains in the run directory.
+    #[error("{} is being written by another prf", path.display())]
+    Busy {
+        /// The file that is locked.
+        path: PathBuf,
+    },
+    /// The loss became infinite or NaN.
+    #[error("the loss of update {update} is {loss}: learning has diverged")]
+    Diverged {
+        /// Updates before.
+        update: u64,
+        /// The loss.
+        loss: f32,
+    },
     /// A device that this libtorch or this machine does not offer.
     #[error("device {got} is not available, expected {expected}")]
     Device {
@@ -33,7 +57,7 @@ pub enum Error {
         /// Why.
         source: std::io::Error,
     },
-    /// A checkpoint that is damaged or belongs to another run.
+    /// A file of a checkpoint that is damaged.
     #[error("cannot use checkpoint {}: got {got}, expected {expected}", path.display())]
     Checkpoint {
         /// The file.
@@ -52,9 +76,22 @@ impl Error {
         move |source| Self::Io { action, path, source }
     }
 
+    /// For `map_err` on files that belong to a checkpoint: one that is missing is damage, not an accident of reading.
+    pub(crate) fn unreadable(path: &Path) -> impl FnOnce(std::io::Error) -> Self {
+        move |source| match source.kind() {
+            std::io::ErrorKind::NotFound => Self::checkpoint(path, "no such file", "all files of the checkpoint"),
+            _ => Self::io("read", path)(source),
+        }
+    }
+
     /// A checkpoint file that does not hold what it should.
     pub(crate) fn checkpoint(path: impl Into<PathBuf>, got: impl fmt::Display, expected: impl fmt::Display) -> Self {
         Self::Checkpoint { path: path.into(), got: got.to_string(), expected: expected.to_string() }
+    }
+
+    /// A checkpoint that was made for something else.
+    pub(crate) fn mismatch(path: impl Into<PathBuf>, got: impl fmt::Display, expected: impl fmt::Display) -> Self {
+        Self::Mismatch { path: path.into(), got: got.to_string(), expected: expected.to_string() }
     }
 }
 

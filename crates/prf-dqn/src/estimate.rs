@@ -55,7 +55,8 @@ impl Estimate {
             task.reset(0);
             Ok(task.step(0).map(drop)?)
         })?;
-        let steps = train.steps.or(train.episodes.map(|episodes| episodes * u64::from(task.spec().limit_steps)));
+        let steps =
+            train.steps.or(train.episodes.map(|episodes| episodes.saturating_mul(task.spec().limit_steps.into())));
         let steps = steps.unwrap_or(0);
         let seconds_a_step = update_s / train.steps_per_update as f64 + acting_s / train.environments as f64 + step_s;
         Ok(Self {

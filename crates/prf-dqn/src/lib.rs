@@ -9,6 +9,7 @@ pub mod device;
 pub mod error;
 pub mod estimate;
 pub mod evaluate;
+pub mod files;
 pub mod learner;
 pub mod network;
 pub mod optimizer;

@@ -10,7 +10,7 @@ const CONVOLUTIONS: [(i64, i64, i64); 3] = [(32, 8, 4), (64, 4, 2), (64, 3, 1)];
 /// Units of the hidden fully connected layer.
 const HIDDEN_UNITS: i64 = 512;
 
-/// Name and shape of each parameter, in the order of the flat tensor.
+/// What decides the shape of the network.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Architecture {
     /// Height and width of the input, in pixels.

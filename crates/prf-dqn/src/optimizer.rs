@@ -47,7 +47,7 @@ impl Adam {
     }
 
     /// One step: `parameters` (flat, shape [n]) move against `gradients`, which together have n elements in the same order.
-    pub fn step(&mut self, parameters: &mut Tensor, gradients: &[Tensor], learning_rate: f64) -> Result<()> {
+    pub(crate) fn step(&mut self, parameters: &mut Tensor, gradients: &[Tensor], learning_rate: f64) -> Result<()> {
         self.steps += 1;
         let size = StepSize {
             rate: learning_rate / (1.0 - BETA1.powf(self.steps as f64)),

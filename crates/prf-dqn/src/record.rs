@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::error::Result;
 
@@ -35,12 +35,12 @@ pub struct TrainRecord {
     pub episode: u64,
     /// Updates so far.
     pub update: u64,
-    /// Mean score of the episodes since the last record.
-    pub mean_score: f64,
+    /// Mean score of the episodes since the last record; absent when none has ended.
+    pub mean_score: Option<f64>,
     /// Mean sum of rewards of these episodes.
-    pub mean_reward: f64,
+    pub mean_reward: Option<f64>,
     /// Mean length of these episodes, in steps.
-    pub mean_steps: f64,
+    pub mean_steps: Option<f64>,
     /// Mean loss of the updates since the last record; absent before the first update.
     pub mean_loss: Option<f64>,
     /// Exploration now.
@@ -83,10 +83,10 @@ pub struct Progress {
     pub done: f64,
     /// Exploration now.
     pub epsilon: f32,
-    /// Mean score of the training episodes since the last evaluation.
-    pub recent_score: f64,
+    /// Mean score of the training episodes since the last evaluation, once one has ended.
+    pub recent_score: Option<f64>,
     /// Mean sum of rewards of the same episodes.
-    pub recent_reward: f64,
+    pub recent_reward: Option<f64>,
     /// Mean score of the last evaluation.
     pub evaluation_score: Option<f64>,
 }
@@ -101,7 +101,7 @@ pub trait Recorder {
 }
 
 /// Where the time of a run went.
-#[derive(Debug, Clone, Copy, Default, Serialize)]
+#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
 pub struct TimeShares {
     /// Batched forward passes that choose actions.
     pub acting_s: f64,

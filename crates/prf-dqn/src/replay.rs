@@ -176,6 +176,7 @@ impl Lane {
             reward += discount * self.rewards[self.at(next)];
             discount *= reach.gamma;
             match outcome {
+                // Any state will do where its value counts nothing.
                 Outcome::Terminated => return Some(Transition { next: row, reward, discount: 0.0 }),
                 Outcome::Truncated => return Some(Transition { next: next + 1, reward, discount }),
                 _ if next + 1 == self.written => return None,

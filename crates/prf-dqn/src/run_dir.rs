@@ -1,7 +1,6 @@
 //! The directory of a run and what lies where in it.
 
 use std::fs;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use prf_core::Frame;
@@ -9,6 +8,7 @@ use serde::Serialize;
 
 use crate::config::RunConfig;
 use crate::error::{Error, Result};
+use crate::files::write_whole;
 use crate::record::TimeShares;
 
 /// A run's directory: `config.toml`, `goal.png`, `manifest.json`, `metrics.jsonl`, `checkpoints/`, `replay/`.
@@ -22,6 +22,8 @@ pub struct RunDir {
 pub struct Manifest {
     /// Version of PRF.
     pub prf_version: &'static str,
+    /// Revision of the sources, when prf was built in a git checkout.
+    pub git_revision: Option<&'static str>,
     /// Version of libtorch.
     pub libtorch_version: &'static str,
     /// Seed of the run.
@@ -46,7 +48,9 @@ impl RunDir {
     /// [`Error::Io`] when the directory is there and not empty, or cannot be written.
     pub fn create(path: &Path, config: &RunConfig, goal: Option<&Frame>) -> Result<Self> {
         let run = Self { path: path.to_owned() };
-        if fs::read_dir(path).is_ok_and(|mut entries| entries.next().is_some()) || path.is_file() {
+        // A goal alone is what an interrupted beginning leaves.
+        let begun = |entry: std::io::Result<fs::DirEntry>| entry.is_ok_and(|entry| entry.file_name() != "goal.png");
+        if fs::read_dir(path).is_ok_and(|mut entries| entries.any(begun)) || path.is_file() {
             let source = std::io::Error::from(std::io::ErrorKind::AlreadyExists);
             return Err(Error::Io { action: "make", path: path.to_owned(), source });
         }
@@ -57,7 +61,8 @@ impl RunDir {
             config.reward.goal = Some("goal.png".into());
         }
         let text = toml::to_string(&config).expect("a configuration is plain tables");
-        run.write_whole("config.toml", text.as_bytes())?;
+        // The configuration makes the directory a run, so it comes last.
+        write_whole(&run.config_path(), text.as_bytes())?;
         Ok(run)
     }
 
@@ -87,17 +92,6 @@ impl RunDir {
     /// [`Error::Io`] when it cannot be written.
     pub fn write_manifest(&self, manifest: &Manifest) -> Result<()> {
         let text = serde_json::to_vec_pretty(manifest).expect("a manifest holds only numbers and strings");
-        self.write_whole("manifest.json", &text)
-    }
-
-    fn write_whole(&self, name: &str, bytes: &[u8]) -> Result<()> {
-        let path = self.path.join(name);
-        let write = || {
-            let mut file = tempfile::NamedTempFile::new_in(&self.path)?;
-            file.write_all(bytes)?;
-            file.as_file().sync_all()?;
-            file.persist(&path).map_err(|error| error.error)
-        };
-        write().map(drop).map_err(Error::io("write", &path))
+        write_whole(&self.path.join("manifest.json"), &text)
     }
 }

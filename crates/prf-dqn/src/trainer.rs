@@ -74,6 +74,25 @@ pub fn architecture(task: &Task) -> Result<Architecture> {
     Ok(Architecture { input: [spec.height as i64, spec.width as i64], actions: spec.actions.len() as i64 })
 }
 
+/// Checks what only the task and this machine can tell: that the network takes the pictures, and that there is memory
+/// for the replay.
+///
+/// # Errors
+/// [`Error::Config`] with the key at fault.
+pub fn check(config: &RunConfig, task: &Task) -> Result<()> {
+    architecture(task)?;
+    let train = &config.train;
+    let bytes = Replay::memory_bytes(train.replay_steps, train.environments, task.observation().len());
+    // Reserved memory is not touched, so this takes no time.
+    Vec::<u8>::new().try_reserve_exact(bytes as usize).map_err(|_| {
+        Error::Config(prf_core::Error::InvalidParam {
+            key: "train.replay_steps".to_owned(),
+            got: format!("{}, which take {:.0} GB", train.replay_steps, bytes as f64 / 1e9),
+            expected: "as many as fit into the memory of this machine".to_owned(),
+        })
+    })
+}
+
 /// Sets libtorch's threads as the configuration asks and gives their number.
 pub fn set_threads(config: &RunConfig) -> i32 {
     if config.train.threads > 0 {
@@ -144,7 +163,9 @@ impl Trainer {
             if self.counters.episodes / self.config.evaluation.every_episodes > self.counters.evaluations_due {
                 self.evaluate(recorder)?;
             }
-            if self.counters.steps / self.config.train.checkpoint_every_steps > self.counters.checkpoints_due {
+            let checkpoints = self.counters.steps / self.config.train.checkpoint_every_steps;
+            // The last checkpoint waits for the last evaluation.
+            if checkpoints > self.counters.checkpoints_due && !self.is_finished() {
                 self.save(recorder)?;
             }
         }
@@ -221,6 +242,9 @@ impl Trainer {
                 self.replay.sample(size, reach, &mut self.sampling, &mut self.batch);
             });
             let loss = timed(&mut self.time.updates_s, || self.learner.update(&self.batch, rate))?;
+            if !loss.is_finite() {
+                return Err(Error::Diverged { update: self.learner.updates, loss });
+            }
             self.counters.window.add_loss(loss);
         }
         Ok(())
@@ -306,12 +330,18 @@ impl Trainer {
         self.counters.steps
     }
 
+    /// Memory that the replay takes once it is full, in bytes.
+    pub fn replay_bytes(&self) -> u64 {
+        let frame_len = self.lanes[0].task.observation().len();
+        Replay::memory_bytes(self.config.train.replay_steps, self.lanes.len(), frame_len)
+    }
+
     /// Mean score of the last greedy evaluation.
     pub fn last_score(&self) -> Option<f64> {
         self.counters.last_score
     }
 
-    /// Where the time went since this process began to train.
+    /// Where the time of the run went so far; what a killed process spent after its last checkpoint is not counted.
     pub fn time(&self) -> TimeShares {
         self.time
     }

@@ -1,7 +1,5 @@
 //! `prf eval`: the greedy policy of a run, measured against the best and the worst player there is.
 
-use std::fs::File;
-use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -10,6 +8,7 @@ use image::{Delay, DynamicImage, GrayImage};
 use prf_core::Frame;
 use prf_dqn::checkpoint::{CheckpointStore, MODEL_FILE, Model};
 use prf_dqn::evaluate::{Episode, Spread, episode_seeds, play_greedily};
+use prf_dqn::files::write_whole;
 use prf_dqn::learner::greedy_actions;
 use prf_dqn::network::QNetwork;
 use prf_dqn::run_dir::RunDir;
@@ -55,10 +54,6 @@ pub(crate) fn run(args: &EvalArgs, printer: &mut Printer) -> Result<ExitStatus> 
     let seed = args.seed.unwrap_or(0);
     let seeds = episode_seeds(seed, "eval", args.episodes as usize);
     let episodes = measure(&network, &loaded, &seeds)?;
-    if let Some(path) = &args.render {
-        render(&network, &loaded, seeds[0], path)?;
-        printer.note(format!("drew the first episode into {}", path.display()));
-    }
     let mut world = registry::make(&loaded.config.env)?;
     let score = Spread::of(episodes.iter().map(|episode| f64::from(episode.score)));
     let report = Report {
@@ -73,6 +68,10 @@ pub(crate) fn run(args: &EvalArgs, printer: &mut Printer) -> Result<ExitStatus> 
         random_score: mean_score(world.as_mut(), &mut Random::new(), seeds.iter().copied())?,
     };
     print(&report, printer)?;
+    if let Some(path) = &args.render {
+        render(&network, &loaded, seeds[0], path)?;
+        printer.note(format!("drew the first episode into {}", path.display()));
+    }
     Ok(ExitStatus::Done)
 }
 
@@ -98,6 +97,7 @@ fn find_model(path: &Path) -> Result<(RunDir, PathBuf)> {
             .hint("name the folder that `prf train` printed, or one of its checkpoints")
             .into());
     };
+    let model = std::fs::canonicalize(&model).unwrap_or(model);
     let run = model.ancestors().skip(1).find(|folder| folder.join("config.toml").is_file());
     let run = run.ok_or_else(|| {
         CliError::misuse(format!("no folder above {} has the run's config.toml", model.display()))
@@ -122,20 +122,21 @@ fn measure(network: &QNetwork, loaded: &LoadedRun, seeds: &[u64]) -> prf_dqn::Re
 fn render(network: &QNetwork, loaded: &LoadedRun, seed: u64, path: &Path) -> Result<()> {
     let mut task = Task::new(&loaded.config.task(), loaded.goal.as_ref())?;
     let actions = task.spec().actions.len();
-    let cannot = |error: &dyn std::fmt::Display| CliError::failed(format!("cannot write {}: {error}", path.display()));
-    let file = File::create(path).map_err(|error| cannot(&error))?;
-    let mut gif = GifEncoder::new_with_speed(BufWriter::new(file), 10);
-    gif.set_repeat(Repeat::Infinite).map_err(|error| cannot(&error))?;
+    let mut bytes = Vec::new();
+    let mut gif = GifEncoder::new_with_speed(&mut bytes, 10);
+    gif.set_repeat(Repeat::Infinite)?;
     task.reset(seed);
-    loop {
-        gif.encode_frame(picture(&task)).map_err(|error| cannot(&error))?;
+    let mut status = Status::Running;
+    while status == Status::Running {
+        gif.encode_frame(picture(&task))?;
         let values = network.q_values(task.observation(), 1)?;
-        let step = greedy_actions(&values, actions).next().map_or(Ok(None), |action| task.step(action).map(Some))?;
-        if step.is_none_or(|step| step.status != Status::Running) {
-            gif.encode_frame(picture(&task)).map_err(|error| cannot(&error))?;
-            return Ok(());
+        for action in greedy_actions(&values, actions) {
+            status = task.step(action)?.status;
         }
     }
+    gif.encode_frame(picture(&task))?;
+    drop(gif);
+    write_whole(path, &bytes).map_err(|error| learning::explain(error.into(), None))
 }
 
 fn picture(task: &Task) -> image::Frame {

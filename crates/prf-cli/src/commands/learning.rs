@@ -1,6 +1,7 @@
 //! What `train` and `eval` share: devices, and the learner's errors in the words of the command line.
 
 use std::io::ErrorKind;
+use std::path::Path;
 
 use prf_dqn::record::TimeShares;
 
@@ -36,11 +37,25 @@ pub(super) fn explain(error: anyhow::Error, resume: Option<&str>) -> anyhow::Err
             }
             _ => error,
         },
-        Some(prf_dqn::Error::Checkpoint { .. }) => CliError::failed(error.to_string())
-            .hint("remove the damaged checkpoint to fall back on the one before it, or start anew with another --out")
+        Some(prf_dqn::Error::Checkpoint { path, .. }) => {
+            let folder = path.ancestors().find(|folder| is_checkpoint(folder));
+            let hint = folder.map_or("start anew with another --out".to_owned(), |folder| {
+                format!("remove the folder {} to fall back on the checkpoint before it", folder.display())
+            });
+            CliError::failed(error.to_string()).hint(hint).into()
+        }
+        Some(prf_dqn::Error::Mismatch { .. }) => {
+            CliError::failed(error.to_string()).hint("use it with the config.toml of its own run").into()
+        }
+        Some(prf_dqn::Error::Diverged { .. }) => CliError::failed(error.to_string())
+            .hint("lower train.learning_rate; the checkpoints written before are whole")
             .into(),
         _ => error,
     }
+}
+
+fn is_checkpoint(folder: &Path) -> bool {
+    folder.file_name().is_some_and(|name| name.to_string_lossy().starts_with("step-")) && folder.is_dir()
 }
 
 /// Where the time of a run went, in one line.

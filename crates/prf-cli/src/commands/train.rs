@@ -4,13 +4,14 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use clap::ValueEnum;
 use prf_dqn::estimate::Estimate;
 use prf_dqn::run_dir::{Manifest, RunDir};
 use prf_dqn::trainer::{Ending, Trainer, set_threads};
 
 use super::learning;
 use crate::ExitStatus;
-use crate::args::TrainArgs;
+use crate::args::{Device, TrainArgs};
 use crate::error::{CliError, Result};
 use crate::printer::Printer;
 use crate::progress::ProgressReporter;
@@ -24,44 +25,57 @@ pub(crate) fn run(args: &TrainArgs, printer: &mut Printer) -> Result<ExitStatus>
         return dry_run(&loaded, device, printer);
     }
     let (run, loaded) = open_run(args, loaded)?;
-    let seed = loaded.config.seed;
     let resume = resume_command(args, run.path());
-    let outcome = (|| {
-        let mut trainer = Trainer::open(loaded.config, loaded.goal.as_ref(), &run, device)?;
-        let resumed = if trainer.steps() > 0 { format!(", from step {}", trainer.steps()) } else { String::new() };
-        printer.note(format!("seed {seed}, threads {threads}, run folder {}{resumed}", run.path().display()));
-        let mut reporter = ProgressReporter::new();
-        let stop = stop_on_interrupt()?;
-        let ending = trainer.run(&mut reporter, &|| stop.load(Ordering::Relaxed));
-        reporter.finish();
-        let ending = ending?;
-        run.write_manifest(&Manifest {
-            prf_version: env!("CARGO_PKG_VERSION"),
-            libtorch_version: prf_dqn::LIBTORCH_VERSION,
-            seed,
-            device: format!("{device:?}"),
-            threads,
-            steps: trainer.steps(),
-            finished: ending == Ending::Finished,
-            time: trainer.time(),
-        })?;
-        Ok((ending, trainer.time(), trainer.last_score()))
-    })();
-    let (ending, time, score) = outcome.map_err(|error| learning::explain(error, Some(&resume)))?;
-    match ending {
-        Ending::Interrupted => {
-            printer.note(format!("interrupted; the run is saved, go on with\n  {resume}"));
-            Ok(ExitStatus::Interrupted)
-        }
-        Ending::Finished => {
-            printer.note(learning::time_line(&time));
-            let score = score.map_or(String::new(), |score| format!(" with a greedy score of {score:.2}"));
-            printer
-                .note(format!("finished{score}; see it play: prf eval {0} --render {0}/play.gif", shown(run.path())));
-            printer.line(run.path().display())?;
-            Ok(ExitStatus::Done)
-        }
+    let (ending, trainer) =
+        train(&run, loaded, device, threads, printer).map_err(|error| learning::explain(error, Some(&resume)))?;
+    if ending == Ending::Interrupted {
+        printer.note(format!("interrupted; the run is saved, go on with\n  {resume}"));
+        return Ok(ExitStatus::Interrupted);
     }
+    let score = trainer.last_score().map_or(String::new(), |score| format!(" with a greedy score of {score:.2}"));
+    printer.note(learning::time_line(&trainer.time()));
+    printer.note(format!("finished{score}; see it play: prf eval {0} --render {0}/play.gif", shown(run.path())));
+    printer.line(run.path().display())?;
+    Ok(ExitStatus::Done)
+}
+
+/// Trains until the run is finished or interrupted.
+fn train(
+    run: &RunDir,
+    loaded: LoadedRun,
+    device: tch::Device,
+    threads: i32,
+    printer: &mut Printer,
+) -> Result<(Ending, Trainer)> {
+    let seed = loaded.config.seed;
+    let mut trainer = Trainer::open(loaded.config, loaded.goal.as_ref(), run, device)?;
+    printer.note(format!(
+        "seed {seed}, threads {threads}, replay memory up to {:.2} GB, run folder {}",
+        trainer.replay_bytes() as f64 / 1e9,
+        run.path().display()
+    ));
+    if trainer.steps() > 0 {
+        printer.note(format!("going on from step {}", trainer.steps()));
+    }
+    let manifest = |trainer: &Trainer, finished| Manifest {
+        prf_version: env!("CARGO_PKG_VERSION"),
+        git_revision: option_env!("PRF_GIT_REVISION"),
+        libtorch_version: prf_dqn::LIBTORCH_VERSION,
+        seed,
+        device: format!("{device:?}").to_lowercase(),
+        threads,
+        steps: trainer.steps(),
+        finished,
+        time: trainer.time(),
+    };
+    run.write_manifest(&manifest(&trainer, false))?;
+    let mut reporter = ProgressReporter::new();
+    let stop = stop_on_interrupt()?;
+    let ending = trainer.run(&mut reporter, &|| stop.load(Ordering::Relaxed));
+    reporter.finish();
+    let ending = ending?;
+    run.write_manifest(&manifest(&trainer, ending == Ending::Finished))?;
+    Ok((ending, trainer))
 }
 
 /// Prints what a run would be: its whole config as TOML, with the costs as comments.
@@ -115,16 +129,24 @@ fn resume_command(args: &TrainArgs, run: &Path) -> String {
     if let Some(seed) = args.seed {
         command.push_str(&format!(" --seed {seed}"));
     }
+    if let Some(device) = args.device.to_possible_value().filter(|_| args.device != Device::Cpu) {
+        command.push_str(&format!(" --device {}", device.get_name()));
+    }
     for set in &args.set {
-        command.push_str(&format!(" --set '{set}'"));
+        command.push_str(&format!(" --set {}", quoted(set)));
     }
     command
 }
 
 /// A path as it can be typed again.
 fn shown(path: &Path) -> String {
-    let text = path.display().to_string();
-    if text.contains(char::is_whitespace) { format!("'{text}'") } else { text }
+    quoted(&path.display().to_string())
+}
+
+/// A word as a shell takes it.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "._/-=:,+@%".contains(c);
+    if word.chars().all(plain) { word.to_owned() } else { format!("'{}'", word.replace('\'', r"'\''")) }
 }
 
 fn stop_on_interrupt() -> Result<Arc<AtomicBool>> {

@@ -8,6 +8,25 @@ use prf_dqn::config::RunConfig;
 use super::{Source, load, misfit};
 use crate::error::{CliError, Result};
 
+/// Builds the task once, so that what does not fit together is known before anything is written.
+fn check_task(config: &RunConfig, goal: Option<&Frame>, source: &Source) -> Result<()> {
+    let error = match prf_envs::Task::new(&config.task(), goal).map_err(prf_dqn::Error::from) {
+        Ok(task) => match prf_dqn::trainer::check(config, &task) {
+            Ok(()) => return Ok(()),
+            Err(error) => error,
+        },
+        Err(error) => error,
+    };
+    match error {
+        prf_dqn::Error::Config(error) | prf_dqn::Error::Task(prf_envs::Error::Core(error)) => match error {
+            prf_core::Error::InvalidParam { .. } => Err(misfit(source, error)),
+            error => Err(CliError::misuse(format!("{}: `{HOG}`: {error}", source.locate(HOG))).into()),
+        },
+        other => Err(other.into()),
+    }
+}
+
+const HOG: &str = "reward.hog";
 const GOAL: &str = "reward.goal";
 
 /// A config that has been checked, and the goal it names.
@@ -32,6 +51,7 @@ pub(crate) fn load_run(path: &Path, sets: &[String], seed: Option<u64>) -> Resul
     config.validate().map_err(|error| misfit(&source, error))?;
     let goal_path = config.reward.goal.as_deref().map(|goal| source.resolve(GOAL, goal));
     let goal = goal_path.as_deref().map(|path| read_goal(path, &source)).transpose()?;
+    check_task(&config, goal.as_ref(), &source)?;
     Ok(LoadedRun { config, goal, goal_path })
 }
 

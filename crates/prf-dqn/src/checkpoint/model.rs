@@ -2,13 +2,13 @@
 
 use std::collections::HashMap;
 use std::fs;
-use std::io::Write;
 use std::path::Path;
 
 use safetensors::{Dtype, SafeTensors};
 
 use super::{bytes_f32, f32_bytes, view};
 use crate::error::{Error, Result};
+use crate::files::write_whole;
 use crate::network::{Architecture, QNetwork};
 
 /// A network's shape and parameters.
@@ -33,15 +33,7 @@ impl Model {
 
     /// Writes the file whole or, on an error, not at all.
     pub fn write(&self, path: &Path) -> Result<()> {
-        let bytes = self.to_bytes();
-        let dir = path.parent().unwrap_or(Path::new("."));
-        let write = || {
-            let mut file = tempfile::NamedTempFile::new_in(dir)?;
-            file.write_all(&bytes)?;
-            file.as_file().sync_all()?;
-            file.persist(path).map_err(|error| error.error)
-        };
-        write().map(drop).map_err(Error::io("write", path))
+        write_whole(path, &self.to_bytes())
     }
 
     fn to_bytes(&self) -> Vec<u8> {
@@ -65,7 +57,7 @@ impl Model {
     /// [`Error::Checkpoint`] when the file is damaged or holds no network of this crate; [`Error::Io`] when it cannot
     /// be read.
     pub fn read(path: &Path) -> Result<Self> {
-        let bytes = fs::read(path).map_err(Error::io("read", path))?;
+        let bytes = fs::read(path).map_err(Error::unreadable(path))?;
         let damaged = |error: safetensors::SafeTensorError| Error::checkpoint(path, error, "a whole safetensors file");
         let (_, metadata) = SafeTensors::read_metadata(&bytes).map_err(damaged)?;
         let tensors = SafeTensors::deserialize(&bytes).map_err(damaged)?;
@@ -94,14 +86,14 @@ impl Model {
     /// Checks that the model fits a task.
     ///
     /// # Errors
-    /// [`Error::Checkpoint`] with both shapes.
+    /// [`Error::Mismatch`] with both shapes.
     pub fn check(&self, expected: &Architecture, path: &Path) -> Result<()> {
         if self.architecture == *expected {
             return Ok(());
         }
         let describe =
             |a: &Architecture| format!("a network for {}×{} px and {} actions", a.input[0], a.input[1], a.actions);
-        Err(Error::checkpoint(path, describe(&self.architecture), describe(expected)))
+        Err(Error::mismatch(path, describe(&self.architecture), describe(expected)))
     }
 }
 

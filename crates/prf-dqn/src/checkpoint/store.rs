@@ -8,11 +8,11 @@ use serde::{Deserialize, Serialize};
 
 use super::{Checkpoint, MODEL_FILE, Model};
 use crate::error::{Error, Result};
+use crate::files::{PARTIAL, sync_dir};
 use crate::replay::Replay;
 
 /// Checkpoints that are kept, the newest ones.
 const KEPT: usize = 2;
-const PARTIAL: &str = ".partial-";
 
 /// A file of the replay: the rows that were new at one checkpoint.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -72,6 +72,7 @@ impl CheckpointStore {
             drop(fs::remove_file(&partial));
             Error::io("write", &path)(source)
         })?;
+        sync_dir(&self.replay)?;
         segments.push(Segment { file, end: replay.written() });
         Ok(segments)
     }
@@ -80,7 +81,7 @@ impl CheckpointStore {
     pub(crate) fn read_replay(&self, segments: &[Segment], replay: &mut Replay) -> Result<()> {
         for segment in segments {
             let path = self.replay.join(&segment.file);
-            let file = File::open(&path).map_err(Error::io("read", &path))?;
+            let file = File::open(&path).map_err(Error::unreadable(&path))?;
             replay.read_segment(&path, file)?;
             if replay.written() != segment.end {
                 let got = format!("{:?} rows", replay.written());
@@ -98,8 +99,13 @@ impl CheckpointStore {
         let write = || {
             fs::create_dir_all(&partial).map_err(Error::io("make", &partial))?;
             checkpoint.write(&partial)?;
+            sync_dir(&partial)?;
+            if path.exists() {
+                // What a user left of a damaged checkpoint; whole ones are never written twice.
+                fs::remove_dir_all(&path).map_err(Error::io("replace", &path))?;
+            }
             fs::rename(&partial, &path).map_err(Error::io("write", &path))?;
-            File::open(&self.checkpoints).and_then(|dir| dir.sync_all()).map_err(Error::io("write", &self.checkpoints))
+            sync_dir(&self.checkpoints)
         };
         write().inspect_err(|_| drop(fs::remove_dir_all(&partial)))?;
         self.forget_old(segments)

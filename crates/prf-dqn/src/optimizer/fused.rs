@@ -27,6 +27,10 @@ pub(super) fn step(
     assert_eq!(parameters.numel(), count, "gradients and parameters differ in number");
     assert_eq!(first.numel(), count, "moments and parameters differ in number");
     assert_eq!(second.numel(), count, "moments and parameters differ in number");
+    if count == 0 {
+        return Ok(());
+    }
+    assert_disjoint(&[parameters, first, second], &gradients);
 
     let (mut parameters, mut first, mut second) = (values_mut(parameters), values_mut(first), values_mut(second));
     let threads = tch::get_num_threads().max(1) as usize;
@@ -86,7 +90,8 @@ fn values(tensor: &Tensor) -> &[f32] {
 
 fn values_mut(tensor: &mut Tensor) -> &mut [f32] {
     assert_host_f32(tensor);
-    // SAFETY: as above; the exclusive borrow keeps other Rust code off this tensor, and no libtorch call runs meanwhile.
+    // SAFETY: as above, and `step` has made sure that no other slice it takes lies over this one; no libtorch call runs
+    // while the slices live.
     unsafe { slice::from_raw_parts_mut(tensor.data_ptr().cast(), tensor.numel()) }
 }
 
@@ -95,4 +100,19 @@ fn assert_host_f32(tensor: &Tensor) {
         tensor.device() == Device::Cpu && tensor.kind() == Kind::Float && tensor.is_contiguous(),
         "Adam's fused step needs contiguous f32 tensors on the CPU"
     );
+}
+
+/// Tensors can be views of each other, which Rust's borrows do not see.
+fn assert_disjoint(written: &[&mut Tensor], read: &[Tensor]) {
+    let range = |tensor: &Tensor| {
+        let start = tensor.data_ptr() as usize;
+        start..start + tensor.numel() * size_of::<f32>()
+    };
+    let mut ranges: Vec<_> = written.iter().map(|tensor| (range(tensor), true)).collect();
+    ranges.extend(read.iter().map(|tensor| (range(tensor), false)));
+    ranges.sort_by_key(|(range, _)| range.start);
+    for pair in ranges.windows(2) {
+        let [(before, a), (after, b)] = pair else { unreachable!("windows of two") };
+        assert!(before.end <= after.start || !(*a || *b), "Adam's tensors share memory");
+    }
 }

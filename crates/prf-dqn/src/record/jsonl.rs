@@ -1,6 +1,6 @@
 //! `metrics.jsonl`: one JSON object a line, each written to the file at once.
 
-use std::fs::{File, OpenOptions};
+use std::fs::{File, OpenOptions, TryLockError};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -18,17 +18,23 @@ impl JsonlRecorder {
     /// Opens the file, to go on at its end.
     ///
     /// # Errors
-    /// When the file cannot be opened.
+    /// [`Error::Busy`] when another process records into it; [`Error::Io`] when it cannot be opened.
     pub fn open(path: &Path) -> Result<Self> {
         let file = OpenOptions::new().append(true).create(true).open(path).map_err(Error::io("open", path))?;
-        Ok(Self { path: path.to_owned(), file })
+        // Whoever holds the lock is training in this run directory; it is given back with the file.
+        match file.try_lock() {
+            Ok(()) => Ok(Self { path: path.to_owned(), file }),
+            Err(TryLockError::WouldBlock) => Err(Error::Busy { path: path.to_owned() }),
+            Err(TryLockError::Error(source)) => Err(Error::io("lock", path)(source)),
+        }
     }
 
-    /// Length of the file, in bytes.
+    /// Length of the file, in bytes, all of which are then on the disk.
     ///
     /// # Errors
-    /// When the file system does not tell.
+    /// When the file cannot be flushed.
     pub fn bytes(&self) -> Result<u64> {
+        self.file.sync_data().map_err(Error::io("write", &self.path))?;
         Ok(self.file.metadata().map_err(Error::io("read", &self.path))?.len())
     }
 

@@ -51,16 +51,20 @@ impl Window {
         self.loss += f64::from(loss);
     }
 
-    pub(super) fn mean_score(&self) -> f64 {
-        self.score / self.episodes.max(1) as f64
+    pub(super) fn mean_score(&self) -> Option<f64> {
+        self.mean(self.score)
     }
 
-    pub(super) fn mean_reward(&self) -> f64 {
-        self.reward / self.episodes.max(1) as f64
+    pub(super) fn mean_reward(&self) -> Option<f64> {
+        self.mean(self.reward)
     }
 
-    pub(super) fn mean_steps(&self) -> f64 {
-        self.steps as f64 / self.episodes.max(1) as f64
+    pub(super) fn mean_steps(&self) -> Option<f64> {
+        self.mean(self.steps as f64)
+    }
+
+    fn mean(&self, sum: f64) -> Option<f64> {
+        (self.episodes > 0).then(|| sum / self.episodes as f64)
     }
 
     pub(super) fn mean_loss(&self) -> Option<f64> {

@@ -12,7 +12,7 @@ use crate::checkpoint::{Checkpoint, CheckpointStore, Model, Segment};
 use crate::error::{Error, Result};
 use crate::evaluate::Episode;
 use crate::optimizer::Adam;
-use crate::record::{Event, Recorder, timed};
+use crate::record::{Event, Recorder, TimeShares, timed};
 use crate::run_dir::RunDir;
 
 /// Everything that is counted.
@@ -28,8 +28,9 @@ pub(super) struct Counters {
     pub(super) last_score: Option<f64>,
     pub(super) best_score: Option<f64>,
     pub(super) window: Window,
-    /// Training time before this process, in seconds.
+    /// Training time before this process, in seconds, and where it went.
     pub(super) elapsed_s: f64,
+    pub(super) time: TimeShares,
 }
 
 /// The JSON part of a checkpoint.
@@ -77,7 +78,7 @@ impl Trainer {
         }
         let state = State {
             config: self.config_text(),
-            counters: Counters { elapsed_s: self.elapsed_s(), ..self.counters.clone() },
+            counters: Counters { elapsed_s: self.elapsed_s(), time: self.time, ..self.counters.clone() },
             updates: self.learner.updates,
             adam_steps,
             episodes: self.lanes.iter().map(|lane| lane.episode).collect(),
@@ -109,15 +110,17 @@ impl Trainer {
         let state: State = serde_json::from_str(&checkpoint.state)
             .map_err(|error| Error::checkpoint(&dir, error, "the state of a run of this version"))?;
         if state.config != self.config_text() {
-            return Err(Error::checkpoint(&dir, "another configuration", "the run's own config.toml, unchanged"));
+            return Err(Error::mismatch(&dir, "another configuration", "the run's own config.toml, unchanged"));
         }
         self.restore_learner(&mut checkpoint, &state, &dir)?;
         self.restore_lanes(&mut checkpoint, &state, &dir)?;
-        self.exploration = rng::restore(&checkpoint.blob("rng.exploration", &dir)?)?;
-        self.sampling = rng::restore(&checkpoint.blob("rng.replay", &dir)?)?;
+        let damaged = |error| Error::checkpoint(&dir, error, "a whole checkpoint");
+        self.exploration = rng::restore(&checkpoint.blob("rng.exploration", &dir)?).map_err(damaged)?;
+        self.sampling = rng::restore(&checkpoint.blob("rng.replay", &dir)?).map_err(damaged)?;
         self.checkpoints.read_replay(&state.segments, &mut self.replay)?;
         self.metrics.truncate(state.metrics_bytes)?;
         self.saved_at = Some(state.counters.steps);
+        self.time = state.counters.time;
         self.counters = state.counters;
         self.segments = state.segments;
         Ok(())
@@ -139,11 +142,12 @@ impl Trainer {
     fn restore_lanes(&mut self, checkpoint: &mut Checkpoint, state: &State, dir: &Path) -> Result<()> {
         if state.episodes.len() != self.lanes.len() {
             let got = format!("{} environments", state.episodes.len());
-            return Err(Error::checkpoint(dir, got, format!("{}", self.lanes.len())));
+            return Err(Error::mismatch(dir, got, format!("{}", self.lanes.len())));
         }
         for (index, lane) in self.lanes.iter_mut().enumerate() {
-            lane.task.load_state(&checkpoint.blob(&format!("task.{index}"), dir)?)?;
-            lane.seeds = rng::restore(&checkpoint.blob(&format!("rng.episodes.{index}"), dir)?)?;
+            let damaged = |error| Error::checkpoint(dir, error, "a whole checkpoint");
+            lane.task.load_state(&checkpoint.blob(&format!("task.{index}"), dir)?).map_err(damaged)?;
+            lane.seeds = rng::restore(&checkpoint.blob(&format!("rng.episodes.{index}"), dir)?).map_err(damaged)?;
             lane.episode = state.episodes[index];
         }
         Ok(())
