@@ -3,7 +3,7 @@
     python -m pip install matplotlib==3.10.7
     python docs/results/plot_breakout.py ORACLE_SCORE RANDOM_SCORE
 
-The two scores are those of the evaluation seeds, as `prf eval` reports them.
+The two scores are means over 1,000 episodes, as `cargo run --release -p prf-envs --example score_players` prints them.
 """
 
 import json
@@ -38,14 +38,14 @@ def main() -> None:
             axes.plot(steps, scores, color=colour, linewidth=1.3, alpha=0.85, label=label if index == 0 else None)
     for score, label in [(oracle, "oracle"), (0.9 * oracle, "90 % of the oracle"), (random, "random player")]:
         axes.axhline(score, color="#555555", linewidth=0.9, linestyle=":" if "%" in label else "--")
-        axes.annotate(label, (1.0, score), xycoords=("axes fraction", "data"), fontsize=8, color="#555555",
-                      ha="right", va="bottom", xytext=(-4, 1), textcoords="offset points")
+        axes.annotate(label, (0.0, score), xycoords=("axes fraction", "data"), fontsize=8, color="#555555",
+                      ha="left", va="bottom", xytext=(4, 1), textcoords="offset points")
     axes.set_xlabel("steps, in thousands (one line a seed)")
     axes.set_ylabel("mean score of the greedy agent")
-    axes.set_ylim(0, None)
+    axes.set_ylim(0, 1.1 * oracle)
     axes.set_xlim(0, None)
     axes.spines[["top", "right"]].set_visible(False)
-    axes.legend(frameon=False, loc="center right")
+    axes.legend(frameon=False, loc="lower right")
     figure.savefig(HERE / "breakout.svg", metadata={"Date": None})
 
 
