@@ -45,7 +45,7 @@ def main() -> None:
     axes.set_ylim(0, 1.1 * oracle)
     axes.set_xlim(0, None)
     axes.spines[["top", "right"]].set_visible(False)
-    axes.legend(frameon=False, loc="lower right")
+    axes.legend(frameon=False, loc="lower right", bbox_to_anchor=(1, 0.1))
     figure.savefig(HERE / "breakout.svg", metadata={"Date": None})
 
 
