@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
-use prf_core::{DistanceScale, Norm};
+use prf_core::{DescriptorKind, DistanceScale, MatchMethod, Norm};
 
 use crate::commands::init::Preset;
 use crate::printer::Format;
@@ -31,7 +31,7 @@ pub(crate) enum Command {
     Train(TrainArgs),
     /// Play episodes with the greedy policy of a run or a checkpoint
     Eval(EvalArgs),
-    /// Score pictures against a picture of the goal
+    /// Score pictures, animations or videos against a goal
     #[command(after_help = SCORE_EXIT_CODES)]
     Score(ScoreArgs),
     /// Write a config file to start from, with its goal picture
@@ -109,14 +109,18 @@ const FORMAT_HELP: &str = "How results are written: for people, or one JSON obje
 
 #[derive(Debug, Args)]
 pub(crate) struct ScoreArgs {
-    /// A picture of the finished task
+    /// A picture of the finished task, of a part of it (--descriptor window), or a sequence that shows
+    /// the movement (--descriptor motion)
     pub(crate) goal: PathBuf,
-    /// The pictures to score
+    /// What to score: pictures, folders of them, animations, videos
     #[arg(required = true, value_name = "FRAME")]
     pub(crate) frames: Vec<PathBuf>,
-    /// How frame and goal are compared
-    #[arg(long, value_enum, default_value_t = Descriptor::Direct)]
-    pub(crate) descriptor: Descriptor,
+    /// Draw what was compared and what differs; of several frames, the last
+    #[arg(long, value_name = "FILE.png")]
+    pub(crate) explain: Option<PathBuf>,
+    /// Refuse sources of more frames than this
+    #[arg(long, value_name = "N", default_value_t = 100_000)]
+    pub(crate) max_frames: u64,
     #[arg(long, value_enum, default_value_t = Format::Text, help = FORMAT_HELP)]
     pub(crate) format: Format,
     // Last, because its heading holds for all that follows.
@@ -125,9 +129,40 @@ pub(crate) struct ScoreArgs {
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
-pub(crate) enum Descriptor {
-    /// The whole frame with the whole goal, both cropped to what is not black
+pub(crate) enum DescriptorArg {
+    /// The whole frame with the whole goal
     Direct,
+    /// The part of the frame that matches the goal best with the goal
+    Window,
+    /// What has moved in the frames so far with what moves in the goal
+    Motion,
+}
+
+impl From<DescriptorArg> for DescriptorKind {
+    fn from(descriptor: DescriptorArg) -> Self {
+        match descriptor {
+            DescriptorArg::Direct => Self::Direct,
+            DescriptorArg::Window => Self::Window,
+            DescriptorArg::Motion => Self::Motion,
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum MethodArg {
+    /// Normalised correlation
+    CcorrNormed,
+    /// Normalised correlation of what differs from the mean
+    CcoeffNormed,
+}
+
+impl From<MethodArg> for MatchMethod {
+    fn from(method: MethodArg) -> Self {
+        match method {
+            MethodArg::CcorrNormed => Self::CcorrNormed,
+            MethodArg::CcoeffNormed => Self::CcoeffNormed,
+        }
+    }
 }
 
 #[derive(Debug, Args)]
@@ -136,7 +171,10 @@ pub(crate) struct RewardArgs {
     /// Take the reward's settings from a config file's [reward]; the options below change single ones
     #[arg(long, value_name = "FILE")]
     pub(crate) config: Option<PathBuf>,
-    /// Side of a HOG cell, as a fraction of the cropped picture's height [default: 0.03]
+    /// How frame and goal are compared [default: direct]
+    #[arg(long, value_enum)]
+    pub(crate) descriptor: Option<DescriptorArg>,
+    /// Side of a HOG cell, as a fraction of the cropped picture's height [default: 0.03; window 0.1, motion 0.05]
     #[arg(long, value_name = "FRACTION", conflicts_with = "cell_px", allow_negative_numbers = true)]
     pub(crate) cell: Option<f32>,
     /// Side of a HOG cell, in pixels
@@ -157,6 +195,27 @@ pub(crate) struct RewardArgs {
     /// What the distance is divided by before exp(-D) [default: sqrt-blocks]
     #[arg(long, value_enum)]
     pub(crate) scale: Option<ScaleArg>,
+    /// Window: what makes a part of the frame the best match [default: ccorr-normed]
+    #[arg(long, value_enum)]
+    pub(crate) method: Option<MethodArg>,
+    /// Window: a picture of the goal's size, black where the goal does not count
+    #[arg(long, value_name = "FILE")]
+    pub(crate) mask: Option<PathBuf>,
+    /// Motion: a pixel that changes by more than this has moved, 0 to 254 [default: 30]
+    #[arg(long, value_name = "LEVEL")]
+    pub(crate) threshold: Option<u8>,
+    /// Motion: the time τ of the first movement [default: 0.1]
+    #[arg(long, value_name = "TAU", allow_negative_numbers = true)]
+    pub(crate) tau_start: Option<f64>,
+    /// Motion: how much τ grows with each frame; the paper takes 0.3 for people, 0.4 for robots [default: 0.4]
+    #[arg(long, value_name = "TAU", allow_negative_numbers = true)]
+    pub(crate) tau_step: Option<f64>,
+    /// Motion: movement is forgotten after (t + 1) / DIVISOR; the paper takes 4 for people, 3 for robots [default: 3]
+    #[arg(long, value_name = "DIVISOR", allow_negative_numbers = true, conflicts_with = "duration")]
+    pub(crate) delta_divisor: Option<f64>,
+    /// Motion: movement is forgotten after this much of τ
+    #[arg(long, value_name = "TAU", allow_negative_numbers = true)]
+    pub(crate) duration: Option<f64>,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]

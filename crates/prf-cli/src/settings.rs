@@ -7,12 +7,14 @@ use serde::de::DeserializeOwned;
 
 use crate::error::{CliError, Result};
 
-pub(crate) use self::reward::reward_params;
+pub(crate) use self::goal::read_goal;
+pub(crate) use self::reward::reward_settings;
 #[cfg(feature = "train")]
 pub(crate) use self::run::{LoadedRun, load_run};
 pub(crate) use self::source::Source;
 
 mod explain;
+mod goal;
 mod overrides;
 mod reward;
 #[cfg(feature = "train")]

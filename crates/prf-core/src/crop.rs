@@ -1,6 +1,7 @@
 //! The box around what is not black (paper, section "Perceptual reward functions").
 
 use crate::FrameView;
+use crate::region::Region;
 
 /// A rectangle of pixels; `x` and `y` are its left column and top row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,6 +28,11 @@ pub struct Rect {
 /// ```
 #[must_use]
 pub fn crop_box(frame: FrameView<'_>) -> Rect {
+    crop_box_of(frame.region())
+}
+
+/// The same for a part of a picture, in the part's own coordinates.
+pub(crate) fn crop_box_of(frame: Region<'_, u8>) -> Rect {
     let (width, height) = (frame.width(), frame.height());
     let lit = |&y: &usize| has_light(frame.row(y));
     let (Some(top), Some(bottom)) = ((0..height).find(lit), (0..height).rfind(lit)) else {

@@ -11,11 +11,11 @@
 //! let mut descriptor = DirectDescriptor::new(&goal, RewardParams::default())?;
 //!
 //! let mut frame = Frame::new(84, 84);
-//! assert_eq!(descriptor.observe(frame.view()).reward, 1.0); // the goal itself
+//! assert_eq!(descriptor.observe(frame.view())?.reward, 1.0); // the goal itself
 //!
 //! frame.row_mut(40)[20..60].fill(255);
 //! frame.row_mut(70)[30..40].fill(255);
-//! let score = descriptor.observe(frame.view());
+//! let score = descriptor.observe(frame.view())?;
 //! assert!(score.distance > 0.0 && score.reward < 1.0);
 //! # Ok::<(), prf_core::Error>(())
 //! ```
@@ -54,7 +54,7 @@ mod resize;
 mod reward;
 
 pub use crop::{Rect, crop_box};
-pub use descriptor::{DirectDescriptor, TaskDescriptor};
+pub use descriptor::{DirectDescriptor, Explanation, TaskDescriptor};
 pub use ema::EmaState;
 pub use error::{Error, PictureProblem};
 pub use frame::{Frame, FrameView};

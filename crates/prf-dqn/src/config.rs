@@ -149,6 +149,17 @@ fn default_checkpoint_every_steps() -> u64 {
 }
 
 impl RunConfig {
+    /// The configuration without the paths of pictures, for comparing runs: where the files lie does not matter.
+    #[must_use]
+    pub fn without_paths(&self) -> Self {
+        let mut config = self.clone();
+        config.reward.goal = None;
+        if let Some(window) = &mut config.reward.window {
+            window.mask = None;
+        }
+        config
+    }
+
     /// The part that describes the task.
     pub fn task(&self) -> TaskConfig {
         TaskConfig { env: self.env.clone(), reward: self.reward.clone(), state: self.state }

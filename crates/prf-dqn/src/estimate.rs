@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use prf_core::Frame;
+use prf_core::Goal;
 use prf_envs::Task;
 use prf_envs::rng::stream;
 
@@ -32,7 +32,7 @@ impl Estimate {
     ///
     /// # Errors
     /// When the task cannot be built or libtorch fails.
-    pub fn of(config: &RunConfig, goal: Option<&Frame>, device: tch::Device) -> Result<Self> {
+    pub fn of(config: &RunConfig, goal: Option<&Goal>, device: tch::Device) -> Result<Self> {
         let train = &config.train;
         let mut task = Task::new(&config.task(), goal)?;
         let architecture = architecture(&task)?;

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use prf_core::Frame;
+use prf_core::Goal;
 use serde::Serialize;
 
 use crate::config::RunConfig;
@@ -11,7 +11,11 @@ use crate::error::{Error, Result};
 use crate::files::write_whole;
 use crate::record::TimeShares;
 
-/// A run's directory: `config.toml`, `goal.png`, `manifest.json`, `metrics.jsonl`, `checkpoints/`, `replay/`.
+/// The goal's picture, and the mask of one that has it.
+const GOAL: &str = "goal.png";
+const MASK: &str = "mask.png";
+
+/// A run's directory: `config.toml`, `goal.png`, `mask.png`, `manifest.json`, `metrics.jsonl`, `checkpoints/`, `replay/`.
 #[derive(Debug, Clone)]
 pub struct RunDir {
     path: PathBuf,
@@ -42,14 +46,16 @@ pub struct Manifest {
 
 impl RunDir {
     /// Begins a run directory: makes it, unless something is there already, and writes the resolved configuration and
-    /// the goal's picture into it, so that the run depends on no other file.
+    /// the goal's pictures into it, so that the run depends on no other file.
     ///
     /// # Errors
     /// [`Error::Io`] when the directory is there and not empty, or cannot be written.
-    pub fn create(path: &Path, config: &RunConfig, goal: Option<&Frame>) -> Result<Self> {
+    pub fn create(path: &Path, config: &RunConfig, goal: Option<&Goal>) -> Result<Self> {
         let run = Self { path: path.to_owned() };
         // A goal alone is what an interrupted beginning leaves.
-        let begun = |entry: std::io::Result<fs::DirEntry>| entry.is_ok_and(|entry| entry.file_name() != "goal.png");
+        let begun = |entry: std::io::Result<fs::DirEntry>| {
+            entry.is_ok_and(|entry| entry.file_name() != GOAL && entry.file_name() != MASK)
+        };
         if fs::read_dir(path).is_ok_and(|mut entries| entries.any(begun)) || path.is_file() {
             let source = std::io::Error::from(std::io::ErrorKind::AlreadyExists);
             return Err(Error::Io { action: "make", path: path.to_owned(), source });
@@ -57,8 +63,12 @@ impl RunDir {
         fs::create_dir_all(path).map_err(Error::io("make", path))?;
         let mut config = config.clone();
         if let Some(goal) = goal {
-            prf_core::io::write_frame(goal.view(), run.path.join("goal.png"))?;
-            config.reward.goal = Some("goal.png".into());
+            prf_core::io::write_frame(goal.picture.view(), run.path.join(GOAL))?;
+            config.reward.goal = Some(GOAL.into());
+            if let (Some(mask), Some(window)) = (&goal.mask, &mut config.reward.window) {
+                prf_core::io::write_frame(mask.view(), run.path.join(MASK))?;
+                window.mask = Some(MASK.into());
+            }
         }
         let text = toml::to_string(&config).expect("a configuration is plain tables");
         // The configuration makes the directory a run, so it comes last.

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use prf_core::Frame;
+use prf_core::Goal;
 use prf_envs::rng::{ChaCha8Rng, below, stream, unit_f32};
 use prf_envs::{Status, Task};
 
@@ -106,13 +106,13 @@ impl Trainer {
     ///
     /// # Errors
     /// When the task cannot be built, the run directory cannot be written or the checkpoint is damaged.
-    pub fn open(config: RunConfig, goal: Option<&Frame>, run: &RunDir, device: tch::Device) -> Result<Self> {
+    pub fn open(config: RunConfig, goal: Option<&Goal>, run: &RunDir, device: tch::Device) -> Result<Self> {
         let mut trainer = Self::new(config, goal, run, device)?;
         trainer.resume(run)?;
         Ok(trainer)
     }
 
-    fn new(config: RunConfig, goal: Option<&Frame>, run: &RunDir, device: tch::Device) -> Result<Self> {
+    fn new(config: RunConfig, goal: Option<&Goal>, run: &RunDir, device: tch::Device) -> Result<Self> {
         let seed = config.seed;
         let task = config.task();
         let make = || Ok::<_, Error>(Task::new(&task, goal)?);

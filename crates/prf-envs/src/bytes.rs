@@ -51,6 +51,11 @@ impl<'a> Reader<'a> {
         Err(self.bad(format!("a state marked \"{}\"", got.escape_ascii()), format!("\"{}\"", tag.escape_ascii())))
     }
 
+    /// What has not been taken yet, to its end.
+    pub(crate) fn rest(self) -> &'a [u8] {
+        self.rest
+    }
+
     /// Nothing may be left over.
     pub(crate) fn finish(&self) -> Result<(), Error> {
         if self.rest.is_empty() {

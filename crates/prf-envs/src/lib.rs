@@ -27,5 +27,5 @@ mod task;
 pub use env::{Environment, Spec, Status, Step};
 pub use error::Error;
 pub use task::{
-    DescriptorKind, EnvConfig, RewardConfig, RewardSource, StateConfig, StateKind, Task, TaskConfig, TaskStep,
+    EnvConfig, RewardConfig, RewardSource, StateConfig, StateKind, Task, TaskConfig, TaskStep, WindowConfig,
 };

@@ -1,46 +1,106 @@
-//! `prf score`: pictures against a picture of the goal.
+//! `prf score`: frames against a goal.
 
 use std::path::{Path, PathBuf};
 
-use prf_core::{DirectDescriptor, Frame, Score, TaskDescriptor, io};
+use prf_core::io::{self, FrameInfo, FrameSource, Limits};
+use prf_core::{Frame, Match, Score, TaskDescriptor, draw_explanation};
 use serde::Serialize;
 
 use crate::ExitStatus;
-use crate::args::{Descriptor, ScoreArgs};
+use crate::args::ScoreArgs;
 use crate::error::{CliError, Result};
 use crate::printer::{Format, Printer};
-use crate::settings::reward_params;
+use crate::settings::{read_goal, reward_settings};
 
 pub(crate) fn run(args: &ScoreArgs, printer: &mut Printer) -> Result<ExitStatus> {
-    let params = reward_params(&args.reward)?;
-    let goal = io::read_frame(&args.goal)?;
-    warn_of_flat_goal(&args.goal, &goal, printer);
-    let mut descriptor = match args.descriptor {
-        Descriptor::Direct => DirectDescriptor::new(&goal, params),
-    }
-    .map_err(|error| CliError::misuse(format!("{}: {error}", args.goal.display())))?;
-    let output = Output::new(&args.frames, printer.format());
-    output.begin(printer)?;
-    let mut rewards = Vec::with_capacity(args.frames.len());
-    for (index, path) in args.frames.iter().enumerate() {
-        match io::read_frame(path) {
-            Ok(frame) => {
-                let score = descriptor.observe(frame.view());
-                output.score(path, index, score, printer)?;
-                rewards.push(score.reward);
-            }
-            Err(error) => printer.error(&error.into()),
+    let settings = reward_settings(&args.reward)?;
+    let goal = read_goal(&args.goal, settings.mask.as_deref(), &settings.descriptor)?;
+    warn_of_flat_goal(&args.goal, &goal.picture, printer);
+    let descriptor = settings
+        .descriptor
+        .describe(&goal, settings.params)
+        .map_err(|error| CliError::misuse(format!("{}: {error}", args.goal.display())))?;
+    let mut scoring = Scoring {
+        descriptor,
+        frame: Frame::new(1, 1),
+        scored: None,
+        rewards: Vec::new(),
+        lost: 0,
+        output: Output::new(&args.frames, printer.format()),
+    };
+    scoring.output.begin(printer)?;
+    let limits = Limits { max_frames: args.max_frames, ..Limits::default() };
+    for path in &args.frames {
+        match FrameSource::open_within(path, limits) {
+            Ok(source) => scoring.score(source, printer)?,
+            Err(error) => scoring.lose(error, printer),
         }
     }
-    warn_of_saturation(&rewards, printer);
-    status(rewards.len(), args.frames.len())
+    warn_of_saturation(&scoring.rewards, printer);
+    if let Some(path) = &args.explain {
+        scoring.explain(path, printer)?;
+    }
+    scoring.status()
 }
 
-fn status(scored: usize, asked: usize) -> Result<ExitStatus> {
-    match scored {
-        0 => Err(CliError::failed("no frame could be scored").into()),
-        _ if scored < asked => Ok(ExitStatus::FinishedWithLoss),
-        _ => Ok(ExitStatus::Done),
+/// What one call has scored so far.
+struct Scoring {
+    descriptor: Box<dyn TaskDescriptor>,
+    frame: Frame,
+    /// What the frame that was scored last is called.
+    scored: Option<String>,
+    rewards: Vec<f32>,
+    /// How many frames or sources could not be scored.
+    lost: usize,
+    output: Output,
+}
+
+impl Scoring {
+    /// All frames of a source.
+    fn score(&mut self, mut source: FrameSource, printer: &mut Printer) -> Result<()> {
+        let many = source.len_hint() != Some(1);
+        let mut next = Frame::new(1, 1);
+        while let Some(read) = source.next_into(&mut next) {
+            let scored = read.and_then(|info| Ok((info, self.descriptor.observe(next.view())?)));
+            match scored {
+                Ok((info, score)) => {
+                    std::mem::swap(&mut self.frame, &mut next);
+                    self.take(&info, many, score, printer)?;
+                }
+                Err(error) => self.lose(error, printer),
+            }
+        }
+        Ok(())
+    }
+
+    fn take(&mut self, info: &FrameInfo, many: bool, score: Score, printer: &mut Printer) -> Result<()> {
+        let matched = self.descriptor.explain(self.frame.view()).matched;
+        let record = Record::new(info, self.rewards.len(), score, matched);
+        self.output.score(&record, many, printer)?;
+        self.scored = Some(record.name(many));
+        self.rewards.push(score.reward);
+        Ok(())
+    }
+
+    fn lose(&mut self, error: prf_core::Error, printer: &mut Printer) {
+        self.lost += 1;
+        printer.error(&error.into());
+    }
+
+    fn explain(&self, path: &Path, printer: &mut Printer) -> Result<()> {
+        let Some(name) = &self.scored else { return Ok(()) };
+        let picture = draw_explanation(&self.descriptor.explain(self.frame.view()), name);
+        io::write_picture(&picture, path)?;
+        printer.note(format_args!("drew what was compared in {name} into {}", path.display()));
+        Ok(())
+    }
+
+    fn status(&self) -> Result<ExitStatus> {
+        match (self.rewards.len(), self.lost) {
+            (0, _) => Err(CliError::failed("no frame could be scored").into()),
+            (_, 0) => Ok(ExitStatus::Done),
+            _ => Ok(ExitStatus::FinishedWithLoss),
+        }
     }
 }
 
@@ -57,19 +117,64 @@ enum Output {
 
 /// A line of JSON output; other tools rely on these names.
 #[derive(Serialize)]
-struct Record<'a> {
-    source: &'a str,
-    /// Place among the frames of the command line, from 0.
+struct Record {
+    source: String,
+    /// Place among all frames that were scored, from 0.
     index: usize,
+    /// When the frame is shown, for what has times.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    time_s: Option<f64>,
     reward: f32,
     distance: f32,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    r#match: Option<Window>,
+    #[serde(skip)]
+    frame: u64,
+}
+
+/// Where the window was found, in pixels of the frame.
+#[derive(Serialize)]
+struct Window {
+    x: usize,
+    y: usize,
+    width: usize,
+    height: usize,
+    score: f32,
+}
+
+impl From<Match> for Window {
+    fn from(Match { rect, score }: Match) -> Self {
+        Self { x: rect.x, y: rect.y, width: rect.width, height: rect.height, score }
+    }
+}
+
+impl Record {
+    fn new(info: &FrameInfo, index: usize, Score { reward, distance }: Score, matched: Option<Match>) -> Self {
+        Self {
+            source: info.path.to_string_lossy().into_owned(),
+            index,
+            time_s: info.time_s,
+            reward,
+            distance,
+            r#match: matched.map(Into::into),
+            frame: info.index,
+        }
+    }
+
+    /// What people call the frame: its file, and where in it.
+    fn name(&self, many: bool) -> String {
+        match self.time_s {
+            Some(time_s) if many => format!("{} #{} ({time_s:.2} s)", self.source, self.frame),
+            _ => self.source.clone(),
+        }
+    }
 }
 
 impl Output {
     fn new(frames: &[PathBuf], format: Format) -> Self {
         match format {
             Format::Json => Self::Json,
-            Format::Text if frames.len() == 1 => Self::Sentence,
+            Format::Text if frames.len() == 1 && frames[0].is_file() => Self::Sentence,
             Format::Text => {
                 let width = |path: &PathBuf| path.to_string_lossy().chars().count();
                 let widest = frames.iter().map(width).max().unwrap_or(0);
@@ -87,17 +192,17 @@ impl Output {
         }
     }
 
-    fn score(&self, path: &Path, index: usize, score: Score, printer: &mut Printer) -> Result<()> {
-        let source = path.to_string_lossy();
-        let Score { reward, distance } = score;
+    fn score(&self, record: &Record, many: bool, printer: &mut Printer) -> Result<()> {
+        let (name, reward, distance) = (record.name(many), short(record.reward), short(record.distance));
         match self {
-            Self::Json => printer.record(&Record { source: &source, index, reward, distance }),
+            Self::Json => printer.record(record),
             Self::Sentence => {
-                printer.line(format_args!("{source}: reward {}, distance {}", short(reward), short(distance)))
+                let window = record.r#match.as_ref().map_or(String::new(), |window| {
+                    format!(", best match {:.3} at ({}, {})", window.score, window.x, window.y)
+                });
+                printer.line(format_args!("{name}: reward {reward}, distance {distance}{window}"))
             }
-            Self::Table { width } => {
-                printer.line(format_args!("{source:width$}  {:>9}  {:>9}", short(reward), short(distance)))
-            }
+            Self::Table { width } => printer.line(format_args!("{name:width$}  {reward:>9}  {distance:>9}")),
         }
     }
 }

@@ -82,10 +82,8 @@ fn train(
 fn dry_run(loaded: &LoadedRun, device: tch::Device, printer: &mut Printer) -> Result<ExitStatus> {
     let estimate = Estimate::of(&loaded.config, loaded.goal.as_ref(), device)
         .map_err(|error| learning::explain(error.into(), None))?;
-    let mut config = loaded.config.clone();
-    config.reward.goal.clone_from(&loaded.goal_path);
-    printer.line(toml::to_string(&config)?.trim_end())?;
-    let up_to = if config.train.episodes.is_some() { "at most " } else { "about " };
+    printer.line(toml::to_string(&loaded.config)?.trim_end())?;
+    let up_to = if loaded.config.train.episodes.is_some() { "at most " } else { "about " };
     printer.line(format!("\n# replay memory: {:.2} GB when full", estimate.replay_bytes as f64 / 1e9))?;
     printer.line(format!("# steps: {up_to}{}", estimate.steps))?;
     printer.line(format!("# time on this machine: {up_to}{}", learning::duration(estimate.seconds)))?;
@@ -108,9 +106,7 @@ fn open_run(args: &TrainArgs, loaded: LoadedRun) -> Result<(RunDir, LoadedRun)> 
             .into());
     }
     let own = load_run(&run.config_path(), &[], None)?;
-    let mut asked = loaded.config;
-    asked.reward.goal.clone_from(&own.config.reward.goal);
-    if asked != own.config {
+    if loaded.config.without_paths() != own.config.without_paths() {
         let message =
             format!("{} was started with another config or seed than {}", path.display(), args.config.display());
         let hint = format!("resume it as it was: prf train {0}/config.toml --out {0} --resume", shown(&path));

@@ -1,30 +1,44 @@
 //! The reward's parameters, from a config, from options, or from both.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use prf_core::{CellSize, RewardParams};
-use prf_envs::RewardConfig;
+use prf_core::{CellSize, DeltaSchedule, DescriptorKind, DescriptorParams, RewardParams};
+use prf_envs::{RewardConfig, RewardSource};
 use serde::Deserialize;
 
 use super::{Source, load, misfit};
 use crate::args::RewardArgs;
 use crate::error::{CliError, Result};
 
+/// How frames are scored.
+#[derive(Debug)]
+pub(crate) struct RewardSettings {
+    pub(crate) descriptor: DescriptorParams,
+    pub(crate) params: RewardParams,
+    /// The mask's file.
+    pub(crate) mask: Option<PathBuf>,
+}
+
 /// What `args` ask for: the config's `[reward]` or the defaults, changed by single options.
 ///
 /// # Errors
 ///
 /// Misuse, pointing at the option or at the config's line, whichever set the wrong value.
-pub(crate) fn reward_params(args: &RewardArgs) -> Result<RewardParams> {
-    let (mut params, source) = match &args.config {
+pub(crate) fn reward_settings(args: &RewardArgs) -> Result<RewardSettings> {
+    let (mut config, source) = match &args.config {
         Some(path) => read(path)?,
-        None => (RewardParams::default(), None),
+        None => (RewardConfig::perceptual(""), None),
     };
-    apply(args, &mut params);
-    match params.hog.validate() {
-        Ok(()) => Ok(params),
-        Err(error) => Err(blame(error, args, source.as_ref())),
+    if let Some(kind) = args.descriptor.map(DescriptorKind::from).filter(|&kind| config.descriptor != Some(kind)) {
+        config = config.with_descriptor(kind);
     }
+    apply(args, &mut config)?;
+    config.validate().map_err(|error| blame(error, args, source.as_ref()))?;
+    Ok(RewardSettings {
+        descriptor: config.descriptor_params().unwrap_or_default(),
+        params: config.params(),
+        mask: config.window.and_then(|window| window.mask),
+    })
 }
 
 /// The part of a config that is of interest here.
@@ -33,13 +47,20 @@ struct RewardTable {
     reward: RewardConfig,
 }
 
-fn read(path: &Path) -> Result<(RewardParams, Option<Source>)> {
-    let (RewardTable { reward }, source) = load(path, &[])?;
-    Ok((reward.params(), Some(source)))
+fn read(path: &Path) -> Result<(RewardConfig, Option<Source>)> {
+    let (RewardTable { mut reward }, source) = load(path, &[])?;
+    if reward.source == RewardSource::Variable {
+        // Such a config says how its agent is rewarded, not how pictures are compared.
+        reward = RewardConfig::perceptual("");
+    }
+    if let Some(mask) = reward.window.as_mut().and_then(|window| window.mask.as_mut()) {
+        *mask = source.resolve("reward.window.mask", mask);
+    }
+    Ok((reward, Some(source)))
 }
 
-fn apply(args: &RewardArgs, params: &mut RewardParams) {
-    let hog = &mut params.hog;
+fn apply(args: &RewardArgs, config: &mut RewardConfig) -> Result<()> {
+    let hog = &mut config.hog;
     if let Some(fraction) = args.cell {
         hog.cell = CellSize::Fraction(fraction);
     }
@@ -50,7 +71,55 @@ fn apply(args: &RewardArgs, params: &mut RewardParams) {
     hog.signed = args.signed.unwrap_or(hog.signed);
     hog.block_cells = args.block_cells.unwrap_or(hog.block_cells);
     hog.norm = args.norm.map_or(hog.norm, Into::into);
-    params.scale = args.scale.map_or(params.scale, Into::into);
+    config.scale = args.scale.map_or(config.scale, Into::into);
+    apply_window(args, config)?;
+    apply_motion(args, config)
+}
+
+fn apply_window(args: &RewardArgs, config: &mut RewardConfig) -> Result<()> {
+    let Some(window) = &mut config.window else {
+        return refuse("window", &[("--method", args.method.is_some()), ("--mask", args.mask.is_some())]);
+    };
+    window.method = args.method.map_or(window.method, Into::into);
+    if args.mask.is_some() {
+        window.mask.clone_from(&args.mask);
+    }
+    Ok(())
+}
+
+fn apply_motion(args: &RewardArgs, config: &mut RewardConfig) -> Result<()> {
+    let Some(motion) = &mut config.motion else {
+        let given = [
+            ("--threshold", args.threshold.is_some()),
+            ("--tau-start", args.tau_start.is_some()),
+            ("--tau-step", args.tau_step.is_some()),
+            ("--delta-divisor", args.delta_divisor.is_some()),
+            ("--duration", args.duration.is_some()),
+        ];
+        return refuse("motion", &given);
+    };
+    motion.threshold = args.threshold.unwrap_or(motion.threshold);
+    motion.tau_start = args.tau_start.unwrap_or(motion.tau_start);
+    motion.tau_step = args.tau_step.unwrap_or(motion.tau_step);
+    if let Some(divisor) = args.delta_divisor {
+        motion.delta = DeltaSchedule::Divisor(divisor);
+    }
+    if let Some(duration) = args.duration {
+        motion.delta = DeltaSchedule::Duration(duration);
+    }
+    Ok(())
+}
+
+/// An option that would change nothing was meant for another descriptor.
+fn refuse(descriptor: &str, options: &[(&str, bool)]) -> Result<()> {
+    match options.iter().find(|(_, given)| *given) {
+        None => Ok(()),
+        Some((option, _)) => {
+            Err(CliError::misuse(format!("{option} is for --descriptor {descriptor}, which was not asked for"))
+                .hint(format!("add --descriptor {descriptor}, or leave {option} out"))
+                .into())
+        }
+    }
 }
 
 fn blame(error: prf_core::Error, args: &RewardArgs, source: Option<&Source>) -> anyhow::Error {
@@ -60,7 +129,7 @@ fn blame(error: prf_core::Error, args: &RewardArgs, source: Option<&Source>) -> 
         return CliError::misuse(format!("{option}: got {got}, expected {expected}")).into();
     }
     match source {
-        Some(source) => misfit(source, error.within("reward.hog")),
+        Some(source) => misfit(source, error),
         None => error.into(),
     }
 }
@@ -68,10 +137,15 @@ fn blame(error: prf_core::Error, args: &RewardArgs, source: Option<&Source>) -> 
 /// The option that was used to set `key`, if one was.
 fn option_for(key: &str, args: &RewardArgs) -> Option<&'static str> {
     let (option, used) = match key {
-        "cell.fraction" => ("--cell", args.cell.is_some()),
-        "cell.px" => ("--cell-px", args.cell_px.is_some()),
-        "orientations" => ("--orientations", args.orientations.is_some()),
-        "block_cells" => ("--block-cells", args.block_cells.is_some()),
+        "reward.hog.cell.fraction" => ("--cell", args.cell.is_some()),
+        "reward.hog.cell.px" => ("--cell-px", args.cell_px.is_some()),
+        "reward.hog.orientations" => ("--orientations", args.orientations.is_some()),
+        "reward.hog.block_cells" => ("--block-cells", args.block_cells.is_some()),
+        "reward.motion.threshold" => ("--threshold", args.threshold.is_some()),
+        "reward.motion.tau_start" => ("--tau-start", args.tau_start.is_some()),
+        "reward.motion.tau_step" => ("--tau-step", args.tau_step.is_some()),
+        "reward.motion.delta.divisor" => ("--delta-divisor", args.delta_divisor.is_some()),
+        "reward.motion.delta.duration" => ("--duration", args.duration.is_some()),
         _ => return None,
     };
     used.then_some(option)

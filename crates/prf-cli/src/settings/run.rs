@@ -1,15 +1,16 @@
 //! The config of a training run, with its goal picture.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use prf_core::Frame;
+use prf_core::Goal;
 use prf_dqn::config::RunConfig;
+use prf_envs::RewardConfig;
 
-use super::{Source, load, misfit};
+use super::{Source, load, misfit, read_goal};
 use crate::error::{CliError, Result};
 
 /// Builds the task once, so that what does not fit together is known before anything is written.
-fn check_task(config: &RunConfig, goal: Option<&Frame>, source: &Source) -> Result<()> {
+fn check_task(config: &RunConfig, goal: Option<&Goal>, source: &Source) -> Result<()> {
     let error = match prf_envs::Task::new(&config.task(), goal).map_err(prf_dqn::Error::from) {
         Ok(task) => match prf_dqn::trainer::check(config, &task) {
             Ok(()) => return Ok(()),
@@ -28,15 +29,15 @@ fn check_task(config: &RunConfig, goal: Option<&Frame>, source: &Source) -> Resu
 
 const HOG: &str = "reward.hog";
 const GOAL: &str = "reward.goal";
+const MASK: &str = "reward.window.mask";
 
 /// A config that has been checked, and the goal it names.
 #[derive(Debug)]
 pub(crate) struct LoadedRun {
+    /// The paths in it are relative to the current folder.
     pub(crate) config: RunConfig,
-    /// The goal picture, if the config names one.
-    pub(crate) goal: Option<Frame>,
-    /// The file the goal was read from.
-    pub(crate) goal_path: Option<PathBuf>,
+    /// The goal, if the config names one.
+    pub(crate) goal: Option<Goal>,
 }
 
 /// Reads the config at `path`, changed by `sets` and then by `seed`, and the goal it names.
@@ -49,22 +50,35 @@ pub(crate) fn load_run(path: &Path, sets: &[String], seed: Option<u64>) -> Resul
     let (mut config, source) = load::<RunConfig>(path, sets)?;
     config.seed = seed.unwrap_or(config.seed);
     config.validate().map_err(|error| misfit(&source, error))?;
-    let goal_path = config.reward.goal.as_deref().map(|goal| source.resolve(GOAL, goal));
-    let goal = goal_path.as_deref().map(|path| read_goal(path, &source)).transpose()?;
+    resolve(&mut config.reward, &source)?;
+    let goal = load_goal(&config.reward, &source)?;
     check_task(&config, goal.as_ref(), &source)?;
-    Ok(LoadedRun { config, goal, goal_path })
+    Ok(LoadedRun { config, goal })
 }
 
-fn read_goal(path: &Path, source: &Source) -> Result<Frame> {
-    if !path.exists() {
-        let missing = format!("{}: `{GOAL}`: there is no file {}", source.locate(GOAL), path.display());
-        return Err(CliError::misuse(missing)
-            .hint("a goal's path is taken from the config's folder; one given with --set, from the current folder")
-            .into());
+/// Makes the paths of the reward relative to the current folder.
+fn resolve(reward: &mut RewardConfig, source: &Source) -> Result<()> {
+    let mask = reward.window.as_mut().and_then(|window| window.mask.as_mut());
+    for (key, path) in [(GOAL, reward.goal.as_mut()), (MASK, mask)] {
+        let Some(path) = path else { continue };
+        *path = source.resolve(key, path);
+        if !path.exists() {
+            let missing = format!("{}: `{key}`: there is no file {}", source.locate(key), path.display());
+            return Err(CliError::misuse(missing)
+                .hint("a goal's path is taken from the config's folder; one given with --set, from the current folder")
+                .into());
+        }
     }
-    prf_core::io::read_frame(path).map_err(|error| {
-        CliError::failed(format!("{}: `{GOAL}`: {error}", source.locate(GOAL)))
+    Ok(())
+}
+
+fn load_goal(reward: &RewardConfig, source: &Source) -> Result<Option<Goal>> {
+    let (Some(path), Some(descriptor)) = (&reward.goal, reward.descriptor_params()) else { return Ok(None) };
+    let mask = reward.window.as_ref().and_then(|window| window.mask.as_deref());
+    let goal = read_goal(path, mask, &descriptor).map_err(|error| {
+        let key = if matches!(&error, prf_core::Error::Picture { path, .. } if Some(&**path) == mask) { MASK } else { GOAL };
+        CliError::failed(format!("{}: `{key}`: {error}", source.locate(key)))
             .hint("name a picture of the finished task, such as a PNG")
-            .into()
-    })
+    })?;
+    Ok(Some(goal))
 }

@@ -155,8 +155,6 @@ impl Trainer {
 
     /// The configuration as a checkpoint remembers it; where the goal's file lies does not matter.
     fn config_text(&self) -> String {
-        let mut config = self.config.clone();
-        config.reward.goal = None;
-        toml::to_string(&config).expect("a configuration is plain tables")
+        toml::to_string(&self.config.without_paths()).expect("a configuration is plain tables")
     }
 }

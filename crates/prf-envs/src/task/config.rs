@@ -2,7 +2,10 @@
 
 use std::path::PathBuf;
 
-use prf_core::{DistanceScale, Error as ParamError, HogParams, RewardParams};
+use prf_core::{
+    CellSize, DescriptorKind, DescriptorParams, DistanceScale, Error as ParamError, HogParams, MatchMethod, MotionParams,
+    Norm, RewardParams, WindowParams,
+};
 use serde::{Deserialize, Serialize};
 
 use crate::{Error, registry};
@@ -74,38 +77,61 @@ impl From<EnvTable> for EnvConfig {
 
 /// `[reward]`: where the agent's reward comes from.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(from = "RewardTable")]
 pub struct RewardConfig {
     /// The source.
     pub source: RewardSource,
     /// How a goal becomes a template; for perceptual rewards only.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub descriptor: Option<DescriptorKind>,
     /// The goal's file, relative to the config's; for perceptual rewards only.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub goal: Option<PathBuf>,
     /// How the distance is scaled; only perceptual rewards look at it.
-    #[serde(default = "default_scale")]
     pub scale: DistanceScale,
+    /// `[reward.window]`; for the window descriptor only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub window: Option<WindowConfig>,
+    /// `[reward.motion]`; for the motion descriptor only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub motion: Option<MotionParams>,
     /// `[reward.hog]`; only perceptual rewards look at it.
-    #[serde(default)]
     pub hog: HogParams,
+}
+
+/// `[reward.window]`: how the window is found.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct WindowConfig {
+    /// What makes a window the best one.
+    pub method: MatchMethod,
+    /// A picture of the goal's size that is black where the goal doesn't count; its file is relative to the config's.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mask: Option<PathBuf>,
 }
 
 impl RewardConfig {
     /// The world's own reward (VRF).
     pub fn variable() -> RewardConfig {
-        let RewardParams { hog, scale } = RewardParams::default();
-        RewardConfig { source: RewardSource::Variable, descriptor: None, goal: None, scale, hog }
+        RewardTable { source: RewardSource::Variable, ..RewardTable::default() }.into()
     }
 
     /// The perceptual reward of a goal in a file, with the direct descriptor and default parameters.
     pub fn perceptual(goal: impl Into<PathBuf>) -> RewardConfig {
+        let goal = Some(goal.into());
+        RewardTable { descriptor: Some(DescriptorKind::Direct), goal, ..RewardTable::default() }.into()
+    }
+
+    /// The same reward by another descriptor, with that one's own defaults and cell size.
+    #[must_use]
+    pub fn with_descriptor(self, kind: DescriptorKind) -> RewardConfig {
+        let hog = HogParams { cell: kind.paper_cell(), ..self.hog };
         RewardConfig {
-            source: RewardSource::Perceptual,
-            descriptor: Some(DescriptorKind::Direct),
-            goal: Some(goal.into()),
-            ..RewardConfig::variable()
+            descriptor: Some(kind),
+            window: (kind == DescriptorKind::Window).then(WindowConfig::default),
+            motion: (kind == DescriptorKind::Motion).then(MotionParams::default),
+            hog,
+            ..self
         }
     }
 
@@ -114,37 +140,100 @@ impl RewardConfig {
         RewardParams { hog: self.hog, scale: self.scale }
     }
 
-    fn validate(&self) -> Result<(), ParamError> {
+    /// The descriptor with its own parameters; none for a variable reward.
+    pub fn descriptor_params(&self) -> Option<DescriptorParams> {
+        let method = self.window.as_ref().map(|window| window.method).unwrap_or_default();
+        Some(match self.descriptor? {
+            DescriptorKind::Direct => DescriptorParams::Direct,
+            DescriptorKind::Window => DescriptorParams::Window(WindowParams { method }),
+            DescriptorKind::Motion => DescriptorParams::Motion(self.motion.unwrap_or_default()),
+        })
+    }
+
+    /// Checks every value.
+    ///
+    /// # Errors
+    /// [`InvalidParam`](ParamError::InvalidParam) with the full key, such as `reward.hog.orientations`.
+    pub fn validate(&self) -> Result<(), ParamError> {
         match self.source {
             RewardSource::Perceptual => {
-                required("reward.descriptor", self.descriptor.is_some(), "\"direct\"")?;
+                required("reward.descriptor", self.descriptor.is_some(), "\"direct\", \"window\" or \"motion\"")?;
                 required("reward.goal", self.goal.is_some(), "the path of a picture of the finished task")?;
             }
             RewardSource::Variable => {
-                useless("reward.descriptor", self.descriptor.is_some())?;
-                useless("reward.goal", self.goal.is_some())?;
+                useless("reward.descriptor", self.descriptor.is_some(), PERCEPTUAL)?;
+                useless("reward.goal", self.goal.is_some(), PERCEPTUAL)?;
             }
         }
+        let is = |kind| self.descriptor == Some(kind);
+        useless("reward.window", self.window.is_some() && !is(DescriptorKind::Window), WINDOW)?;
+        useless("reward.motion", self.motion.is_some() && !is(DescriptorKind::Motion), MOTION)?;
+        self.motion.unwrap_or_default().validate().map_err(|error| error.within("reward.motion"))?;
         self.hog.validate().map_err(|error| error.within("reward.hog"))
     }
 }
 
+const PERCEPTUAL: &str = "nothing, because reward.source is \"variable\": remove it, or ask for \"perceptual\"";
+const WINDOW: &str = "nothing, because reward.descriptor is not \"window\": remove it, or ask for \"window\"";
+const MOTION: &str = "nothing, because reward.descriptor is not \"motion\": remove it, or ask for \"motion\"";
+
+/// What stands in the file, before the descriptor's own cell size and tables are filled in.
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RewardTable {
+    source: RewardSource,
+    descriptor: Option<DescriptorKind>,
+    goal: Option<PathBuf>,
+    #[serde(default)]
+    scale: DistanceScale,
+    window: Option<WindowConfig>,
+    motion: Option<MotionParams>,
+    #[serde(default)]
+    hog: HogTable,
+}
+
+/// `[reward.hog]` as it stands in the file.
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct HogTable {
+    orientations: Option<usize>,
+    signed: Option<bool>,
+    cell: Option<CellSize>,
+    block_cells: Option<usize>,
+    norm: Option<Norm>,
+}
+
+impl From<RewardTable> for RewardConfig {
+    fn from(table: RewardTable) -> RewardConfig {
+        let RewardTable { source, descriptor, goal, scale, window, motion, hog } = table;
+        let default = HogParams { cell: descriptor.unwrap_or_default().paper_cell(), ..HogParams::default() };
+        RewardConfig {
+            source,
+            descriptor,
+            goal,
+            scale,
+            window: window.or((descriptor == Some(DescriptorKind::Window)).then(WindowConfig::default)),
+            motion: motion.or((descriptor == Some(DescriptorKind::Motion)).then(MotionParams::default)),
+            hog: HogParams {
+                orientations: hog.orientations.unwrap_or(default.orientations),
+                signed: hog.signed.unwrap_or(default.signed),
+                cell: hog.cell.unwrap_or(default.cell),
+                block_cells: hog.block_cells.unwrap_or(default.block_cells),
+                norm: hog.norm.unwrap_or(default.norm),
+            },
+        }
+    }
+}
+
 /// Where the reward comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RewardSource {
     /// F of the mirror frame after each action: how much it looks like the goal.
+    #[default]
     Perceptual,
     /// What the world itself gives (VRF).
     Variable,
-}
-
-/// How a goal becomes a template.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum DescriptorKind {
-    /// The whole picture (section III-A of the paper).
-    Direct,
 }
 
 /// `[state]`: what the agent sees.
@@ -183,20 +272,12 @@ pub enum StateKind {
     Mirror,
 }
 
-fn default_scale() -> DistanceScale {
-    RewardParams::default().scale
-}
-
 fn required(key: &str, given: bool, expected: &str) -> Result<(), ParamError> {
     if given { Ok(()) } else { Err(invalid(key, "nothing", expected)) }
 }
 
-fn useless(key: &str, given: bool) -> Result<(), ParamError> {
-    if !given {
-        return Ok(());
-    }
-    let expected = "nothing, because reward.source is \"variable\": remove it, or ask for \"perceptual\"";
-    Err(invalid(key, "a value", expected))
+fn useless(key: &str, given: bool, expected: &str) -> Result<(), ParamError> {
+    if given { Err(invalid(key, "a value", expected)) } else { Ok(()) }
 }
 
 fn invalid(key: &str, got: impl Into<String>, expected: &str) -> ParamError {

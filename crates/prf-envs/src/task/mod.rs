@@ -3,9 +3,11 @@
 mod config;
 mod state;
 
-use prf_core::{DirectDescriptor, Frame, TaskDescriptor};
+use prf_core::{Error as CoreError, Frame, Goal, TaskDescriptor};
 
-pub use self::config::{DescriptorKind, EnvConfig, RewardConfig, RewardSource, StateConfig, StateKind, TaskConfig};
+pub use self::config::{
+    EnvConfig, RewardConfig, RewardSource, StateConfig, StateKind, TaskConfig, WindowConfig,
+};
 use self::state::Representation;
 use crate::bytes::Reader;
 use crate::{Environment, Error, Spec, Status, registry};
@@ -27,7 +29,7 @@ pub struct TaskStep {
 /// A world, its reward and what the agent sees of it.
 ///
 /// ```
-/// use prf_core::Frame;
+/// use prf_core::{Frame, Goal};
 /// use prf_envs::{EnvConfig, RewardConfig, StateConfig, Task, TaskConfig};
 ///
 /// let config = TaskConfig {
@@ -35,7 +37,7 @@ pub struct TaskStep {
 ///     reward: RewardConfig::perceptual("black.png"),
 ///     state: StateConfig::default(),
 /// };
-/// let mut task = Task::new(&config, Some(&Frame::new(84, 84)))?;
+/// let mut task = Task::new(&config, Some(&Goal::from(Frame::new(84, 84))))?;
 /// task.reset(1);
 /// let step = task.step(0)?;
 /// assert!(step.reward > 0.0 && step.reward < 1.0);
@@ -57,17 +59,19 @@ enum Reward {
 impl Task {
     /// The task of `config` before its first episode.
     ///
-    /// `goal` is the picture that `reward.goal` names; a perceptual reward needs it, a variable one takes none.
+    /// `goal` holds the pictures that `reward.goal` and `reward.window.mask` name; a perceptual reward needs it, a
+    /// variable one takes none.
     ///
     /// # Errors
-    /// As [`TaskConfig::validate`]; a missing or superfluous goal; a goal that the descriptor can't use.
-    pub fn new(config: &TaskConfig, goal: Option<&Frame>) -> Result<Task, Error> {
+    /// As [`TaskConfig::validate`]; a missing or superfluous goal; a goal that the descriptor can't use or that is larger
+    /// than the world's picture.
+    pub fn new(config: &TaskConfig, goal: Option<&Goal>) -> Result<Task, Error> {
         config.validate()?;
         let environment = registry::make(&config.env)?;
         let &Spec { width, height, .. } = environment.spec();
         Ok(Task {
             environment,
-            reward: Reward::new(&config.reward, goal)?,
+            reward: Reward::new(&config.reward, goal, [height, width])?,
             mirror: Frame::new(width, height),
             state: Representation::new(&config.state, width, height)?,
         })
@@ -97,7 +101,7 @@ impl Task {
         self.look();
         let reward = match &mut self.reward {
             Reward::Variable => step.reward,
-            Reward::Perceptual(descriptor) => descriptor.observe(self.mirror.view()).reward,
+            Reward::Perceptual(descriptor) => descriptor.observe(self.mirror.view())?.reward,
         };
         Ok(TaskStep { reward, score: step.score, status: step.status })
     }
@@ -124,6 +128,7 @@ impl Task {
         bytes.extend((world.len() as u32).to_le_bytes());
         bytes.extend(world);
         self.state.save_into(&mut bytes);
+        bytes.extend(self.reward.save());
         bytes
     }
 
@@ -137,8 +142,7 @@ impl Task {
         let world_len = reader.u32()? as usize;
         let world = reader.take(world_len)?;
         let state = self.state.restored(&mut reader)?;
-        reader.finish()?;
-        self.environment.load_state(world)?;
+        self.reward.load(reader.rest(), || self.environment.load_state(world))?;
         self.environment.draw_into(&mut self.mirror);
         self.state = state;
         Ok(())
@@ -152,20 +156,49 @@ impl Task {
 }
 
 impl Reward {
-    fn new(config: &RewardConfig, goal: Option<&Frame>) -> Result<Reward, Error> {
-        let Some(kind) = config.descriptor else {
+    fn new(config: &RewardConfig, goal: Option<&Goal>, shape: [usize; 2]) -> Result<Reward, Error> {
+        let Some(params) = config.descriptor_params() else {
             return match goal {
                 None => Ok(Reward::Variable),
                 Some(_) => Err(Error::param("reward.goal", "a picture", "none for a variable reward")),
             };
         };
         let goal = goal.ok_or_else(|| Error::param("reward.goal", "no picture", "one for a perceptual reward"))?;
-        match kind {
-            DescriptorKind::Direct => {
-                let descriptor =
-                    DirectDescriptor::new(goal, config.params()).map_err(|error| error.within("reward"))?;
-                Ok(Reward::Perceptual(Box::new(descriptor)))
-            }
+        let describe = || {
+            let mut descriptor = params.describe(goal, config.params())?;
+            descriptor.prepare(shape)?;
+            Ok::<_, CoreError>(descriptor)
+        };
+        Ok(Reward::Perceptual(describe().map_err(|error| error.within("reward"))?))
+    }
+
+    /// What the descriptor remembers of the episode.
+    fn save(&self) -> Vec<u8> {
+        match self {
+            Reward::Variable => Vec::new(),
+            Reward::Perceptual(descriptor) => descriptor.save_state(),
         }
     }
+
+    /// Takes up what [`save`](Reward::save) gave, if `others` can be loaded as well.
+    fn load(&mut self, bytes: &[u8], others: impl FnOnce() -> Result<(), Error>) -> Result<(), Error> {
+        let before = self.save();
+        match self {
+            Reward::Variable if bytes.is_empty() => {}
+            Reward::Variable => return Err(bad_state(format!("{} bytes too many", bytes.len()), "none for this reward")),
+            Reward::Perceptual(descriptor) => descriptor.load_state(bytes).map_err(|error| match error {
+                CoreError::Restore { got, expected } => bad_state(got, expected),
+                other => other.into(),
+            })?,
+        }
+        others().inspect_err(|_| {
+            if let Reward::Perceptual(descriptor) = self {
+                descriptor.load_state(&before).expect("it gave these bytes itself");
+            }
+        })
+    }
+}
+
+fn bad_state(got: impl Into<String>, expected: impl Into<String>) -> Error {
+    Error::BadState { what: "a task", got: got.into(), expected: expected.into() }
 }

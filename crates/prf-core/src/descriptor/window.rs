@@ -1,0 +1,178 @@
+//! The goal is a part of the picture, wherever it may be found.
+
+use serde::{Deserialize, Serialize};
+
+use super::comparison::Comparison;
+use super::{Explanation, TaskDescriptor};
+use crate::{Error, Frame, FrameView, Match, MatchMethod, RewardParams, Score, TemplateMatcher};
+
+/// Parameters of a window task descriptor. In a file, every key may be left out.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct WindowParams {
+    /// What makes a window of the frame the best one.
+    pub method: MatchMethod,
+}
+
+/// Window task descriptor: the part of the agent's frame that matches the goal best is compared with it.
+///
+/// The goal slides over the frame; the window of the highest normalised correlation is the agent's template. Both are
+/// then compared as by the [`DirectDescriptor`](crate::DirectDescriptor).
+///
+/// ```
+/// use prf_core::{Frame, Rect, RewardParams, TaskDescriptor, WindowDescriptor, WindowParams};
+/// let mut goal = Frame::new(12, 9);
+/// goal.row_mut(2)[1..6].fill(200);
+/// goal.row_mut(7)[5..11].fill(120);
+/// let mut descriptor = WindowDescriptor::new(&goal, None, WindowParams::default(), RewardParams::default())?;
+///
+/// let mut frame = Frame::new(84, 84);
+/// frame.row_mut(32)[51..56].fill(200);
+/// frame.row_mut(37)[55..61].fill(120);
+/// frame.row_mut(70).fill(90);
+/// assert_eq!(descriptor.observe(frame.view())?.reward, 1.0);
+/// let found = descriptor.explain(frame.view()).matched.unwrap();
+/// assert_eq!(found.rect, Rect { x: 50, y: 30, width: 12, height: 9 });
+/// # Ok::<(), prf_core::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct WindowDescriptor {
+    matcher: TemplateMatcher,
+    comparison: Comparison,
+    cut_out: Option<CutOut>,
+    matched: Option<Match>,
+}
+
+/// A goal that is no rectangle: what lies outside of the mask is black in both templates.
+#[derive(Clone, Debug)]
+struct CutOut {
+    mask: Frame,
+    template: Frame,
+}
+
+impl WindowDescriptor {
+    /// Prepares a goal. Where `mask`, a picture of the goal's size, is black the goal doesn't count.
+    ///
+    /// # Errors
+    ///
+    /// As [`DirectDescriptor::new`](crate::DirectDescriptor::new) and [`TemplateMatcher::new`].
+    pub fn new(
+        goal: &Frame,
+        mask: Option<&Frame>,
+        window: WindowParams,
+        params: RewardParams,
+    ) -> Result<WindowDescriptor, Error> {
+        let matcher = TemplateMatcher::new(goal, mask, window.method)?;
+        let mut template = goal.clone();
+        let cut_out = mask.map(|mask| {
+            template.as_mut_slice().iter_mut().zip(mask.as_slice()).for_each(blacken);
+            CutOut { mask: mask.clone(), template: Frame::new(goal.width(), goal.height()) }
+        });
+        Ok(WindowDescriptor { matcher, comparison: Comparison::new(&template, params)?, cut_out, matched: None })
+    }
+}
+
+impl TaskDescriptor for WindowDescriptor {
+    fn prepare(&mut self, shape: [usize; 2]) -> Result<(), Error> {
+        self.matcher.prepare(shape)
+    }
+
+    fn reset(&mut self) {}
+
+    fn observe(&mut self, mirror: FrameView<'_>) -> Result<Score, Error> {
+        let matched = self.matcher.best(mirror)?;
+        self.matched = Some(matched);
+        let window = mirror.region().within(matched.rect);
+        let Some(CutOut { mask, template }) = &mut self.cut_out else {
+            return Ok(self.comparison.score(window));
+        };
+        for y in 0..mask.height() {
+            let row = template.row_mut(y);
+            row.copy_from_slice(window.row(y));
+            row.iter_mut().zip(mask.view().row(y)).for_each(blacken);
+        }
+        Ok(self.comparison.score(template.view().region()))
+    }
+
+    fn explain<'a>(&'a self, mirror: FrameView<'a>) -> Explanation<'a> {
+        self.comparison.explain(mirror, self.matched)
+    }
+}
+
+fn blacken((pixel, &mask): (&mut u8, &u8)) {
+    if mask == 0 {
+        *pixel = 0;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{CellSize, HogParams, Rect};
+
+    fn params() -> RewardParams {
+        let hog = HogParams { cell: CellSize::Px(2), ..HogParams::default() };
+        RewardParams { hog, ..RewardParams::default() }
+    }
+
+    fn texture(width: usize, height: usize, seed: usize) -> Frame {
+        let pixels = (0..width * height).map(|i| 1 + ((i * (seed + 5) * 2_654_435_761) >> 13) as u8 % 255).collect();
+        Frame::from_vec(width, height, pixels).expect("sides above 0")
+    }
+
+    fn paste(frame: &mut Frame, picture: &Frame, [left, top]: [usize; 2]) {
+        for y in 0..picture.height() {
+            frame.row_mut(top + y)[left..left + picture.width()].copy_from_slice(picture.view().row(y));
+        }
+    }
+
+    #[test]
+    fn the_goal_is_found_wherever_it_lies() {
+        let goal = texture(9, 12, 1);
+        for method in [MatchMethod::CcorrNormed, MatchMethod::CcoeffNormed] {
+            let window = WindowParams { method };
+            let mut descriptor = WindowDescriptor::new(&goal, None, window, params()).expect("valid");
+            for at in [[0, 0], [31, 20], [11, 28]] {
+                let mut frame = texture(40, 40, 2);
+                paste(&mut frame, &goal, at);
+                assert_eq!(descriptor.observe(frame.view()).expect("it fits").reward, 1.0);
+                let explanation = descriptor.explain(frame.view());
+                let rect = Rect { x: at[0], y: at[1], width: 9, height: 12 };
+                assert_eq!(explanation.matched.expect("observed").rect, rect);
+                assert_eq!(explanation.agent_box, rect);
+            }
+        }
+    }
+
+    #[test]
+    fn what_the_mask_leaves_out_does_not_count() {
+        let goal = texture(10, 10, 1);
+        let mut mask = Frame::new(10, 10);
+        (2..8).for_each(|y| mask.row_mut(y)[2..8].fill(255));
+        let mut frame = texture(40, 40, 3);
+        let (mut masked, mut plain) = (goal.clone(), params());
+        plain.scale = crate::DistanceScale::None;
+        masked.row_mut(0).fill(7);
+        paste(&mut frame, &masked, [13, 21]);
+        let score = |mask| {
+            let window = WindowParams::default();
+            let mut descriptor = WindowDescriptor::new(&goal, mask, window, plain).expect("valid");
+            descriptor.observe(frame.view()).expect("it fits")
+        };
+        assert_eq!(score(Some(&mask)).reward, 1.0);
+        assert!(score(None).reward < 0.9);
+    }
+
+    #[test]
+    fn a_goal_larger_than_the_frame_is_refused() {
+        let mut descriptor =
+            WindowDescriptor::new(&texture(9, 12, 1), None, WindowParams::default(), params()).expect("valid");
+        for shape in [[11, 40], [40, 8]] {
+            let error = descriptor.prepare(shape).expect_err("too small").to_string();
+            assert!(error.contains("9x12"), "{error}");
+            assert!(error.contains(&format!("{}x{}", shape[1], shape[0])), "{error}");
+            assert!(descriptor.observe(Frame::new(shape[1], shape[0]).view()).is_err());
+        }
+        descriptor.prepare([12, 9]).expect("just large enough");
+    }
+}
