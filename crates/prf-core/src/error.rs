@@ -39,6 +39,18 @@ pub enum Error {
         value: f32,
     },
 
+    /// A frame has another size than the frames before it.
+    #[error(
+        "got a frame of {}x{} px, expected {}x{} as the frames before it; bring all frames of a \
+         sequence to one size, or reset before a new one", shape[1], shape[0], expected[1], expected[0]
+    )]
+    FrameSize {
+        /// `[h, w]` of the frame.
+        shape: [usize; 2],
+        /// `[h, w]` of the frames before it.
+        expected: [usize; 2],
+    },
+
     /// A picture is too small to hold one block of cells.
     #[error(
         "a picture of {width}x{height} px is too small for {block_cells}x{block_cells} cells of \
