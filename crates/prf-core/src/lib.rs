@@ -42,12 +42,15 @@ mod crop;
 mod descriptor;
 mod ema;
 mod error;
+#[cfg(feature = "explain")]
+mod explain;
 mod frame;
 mod gradient;
 mod hog;
 #[cfg(feature = "io")]
 pub mod io;
 pub mod luma;
+mod matching;
 mod motion;
 mod plane;
 mod rank;
@@ -56,11 +59,17 @@ mod resize;
 mod reward;
 
 pub use crop::{Rect, crop_box};
-pub use descriptor::{DirectDescriptor, Explanation, TaskDescriptor};
+pub use descriptor::{
+    DescriptorKind, DescriptorParams, DirectDescriptor, Explanation, Goal, MotionDescriptor, TaskDescriptor,
+    WindowDescriptor, WindowParams,
+};
 pub use ema::EmaState;
 pub use error::{Error, PictureProblem};
+#[cfg(feature = "explain")]
+pub use explain::{Picture, draw_explanation};
 pub use frame::{Frame, FrameView};
 pub use hog::{CellSize, Hog, HogLayout, HogParams, Norm};
+pub use matching::{Match, MatchMethod, TemplateMatcher};
 pub use motion::{DeltaSchedule, MotionParams, MotionState, MotionTemplate};
 pub use plane::{Plane, PlaneView};
 pub use rank::spearman;

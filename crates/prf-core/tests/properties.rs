@@ -51,7 +51,7 @@ fn reward_params() -> impl Strategy<Value = RewardParams> {
 }
 
 fn score(goal: &Frame, frame: &Frame, params: RewardParams) -> Score {
-    DirectDescriptor::new(goal, params).unwrap().observe(frame.view())
+    DirectDescriptor::new(goal, params).unwrap().observe(frame.view()).unwrap()
 }
 
 fn hog(image: &Frame, params: HogParams) -> Option<(HogLayout, Vec<f32>)> {
@@ -171,7 +171,7 @@ proptest! {
     #[test]
     fn no_frame_is_refused(goal in frame(8..16), other in frame(1..40), hog in hog_params(), scale in scale()) {
         if let Ok(mut descriptor) = DirectDescriptor::new(&goal, RewardParams { hog, scale }) {
-            let score = descriptor.observe(other.view());
+            let score = descriptor.observe(other.view()).unwrap();
             prop_assert!(score.reward > 0.0 && score.reward <= 1.0, "{score:?}");
         }
     }
@@ -182,7 +182,7 @@ proptest! {
     ) {
         let mut kept = DirectDescriptor::new(&goal, params).unwrap();
         for frame in frames.iter().chain(&frames) {
-            prop_assert_eq!(kept.observe(frame.view()), score(&goal, frame, params));
+            prop_assert_eq!(kept.observe(frame.view()).unwrap(), score(&goal, frame, params));
         }
     }
 

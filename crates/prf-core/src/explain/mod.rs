@@ -140,8 +140,12 @@ impl Differences {
     fn cells_for(&self, part: f32) -> usize {
         let mut sorted = self.cells.clone();
         sorted.sort_by(|a, b| b.total_cmp(a));
-        let mut sum = 0.0;
-        sorted.iter().take_while(|&&cell| std::mem::replace(&mut sum, sum + cell) < part && cell > 0.0).count()
+        let sums = sorted.iter().scan(0.0, |sum, cell| {
+            let before = *sum;
+            *sum += cell;
+            Some((before, *cell))
+        });
+        sums.take_while(|&(before, cell)| before < part && cell > 0.0).count()
     }
 
     fn words(&self) -> String {
