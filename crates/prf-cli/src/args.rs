@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
-use prf_core::{DescriptorKind, DistanceScale, MatchMethod, Norm};
+use prf_core::{DescriptorKind, DistanceScale, MatchMethod, Norm, Rect};
 
 use crate::commands::init::Preset;
 use crate::printer::Format;
@@ -34,6 +34,9 @@ pub(crate) enum Command {
     /// Score pictures, animations or videos against a goal
     #[command(after_help = SCORE_EXIT_CODES)]
     Score(ScoreArgs),
+    /// Make a goal: a part of a picture, a picture with something put into it, or the template of a movement
+    #[command(subcommand_required = true, arg_required_else_help = true)]
+    Goal(GoalArgs),
     /// Write a config file to start from, with its goal picture
     Init(InitArgs),
     /// Print a completion script for a shell
@@ -46,7 +49,7 @@ impl Command {
         match self {
             Self::Eval(args) => args.format,
             Self::Score(args) => args.format,
-            Self::Train(_) | Self::Init(_) | Self::Completions(_) => Format::Text,
+            Self::Train(_) | Self::Goal(_) | Self::Init(_) | Self::Completions(_) => Format::Text,
         }
     }
 }
@@ -201,19 +204,26 @@ pub(crate) struct RewardArgs {
     /// Window: a picture of the goal's size, black where the goal does not count
     #[arg(long, value_name = "FILE")]
     pub(crate) mask: Option<PathBuf>,
-    /// Motion: a pixel that changes by more than this has moved, 0 to 254 [default: 30]
+    #[command(flatten)]
+    pub(crate) motion: MotionOptions,
+}
+
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Motion options")]
+pub(crate) struct MotionOptions {
+    /// A pixel that changes by more than this has moved, 0 to 254 [default: 30]
     #[arg(long, value_name = "LEVEL")]
     pub(crate) threshold: Option<u8>,
-    /// Motion: the time τ of the first movement [default: 0.1]
+    /// The time τ of the first movement [default: 0.1]
     #[arg(long, value_name = "TAU", allow_negative_numbers = true)]
     pub(crate) tau_start: Option<f64>,
-    /// Motion: how much τ grows with each frame; the paper takes 0.3 for people, 0.4 for robots [default: 0.4]
+    /// How much τ grows with each frame; the paper takes 0.3 for people, 0.4 for robots [default: 0.4]
     #[arg(long, value_name = "TAU", allow_negative_numbers = true)]
     pub(crate) tau_step: Option<f64>,
-    /// Motion: movement is forgotten after (t + 1) / DIVISOR; the paper takes 4 for people, 3 for robots [default: 3]
+    /// Movement is forgotten after (t + 1) / DIVISOR; the paper takes 4 for people, 3 for robots [default: 3]
     #[arg(long, value_name = "DIVISOR", allow_negative_numbers = true, conflicts_with = "duration")]
     pub(crate) delta_divisor: Option<f64>,
-    /// Motion: movement is forgotten after this much of τ
+    /// Movement is forgotten after this much of τ
     #[arg(long, value_name = "TAU", allow_negative_numbers = true)]
     pub(crate) duration: Option<f64>,
 }
@@ -258,6 +268,87 @@ impl From<ScaleArg> for DistanceScale {
             ScaleArg::SqrtFeatures => Self::SqrtFeatures,
         }
     }
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct GoalArgs {
+    #[command(subcommand)]
+    pub(crate) command: GoalCommand,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum GoalCommand {
+    /// Cut a part out of a picture
+    Crop(CropArgs),
+    /// Put a cut-out into a picture
+    Paste(PasteArgs),
+    /// Make the motion template of a folder of pictures, an animation or a video
+    Motion(MotionArgs),
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CropArgs {
+    /// The picture, such as a screenshot
+    pub(crate) picture: PathBuf,
+    /// The part: left column, top row, width and height in pixels
+    #[arg(long, value_name = "X,Y,WIDTH,HEIGHT", value_parser = parse_rect)]
+    pub(crate) rect: Rect,
+    #[command(flatten)]
+    pub(crate) out: GoalOut,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct PasteArgs {
+    /// The picture, such as a screenshot
+    pub(crate) picture: PathBuf,
+    /// What to put into it; where it is transparent, the picture stays
+    pub(crate) cut_out: PathBuf,
+    /// Where the cut-out's left column and top row come to lie, in pixels
+    #[arg(long, value_name = "X,Y", value_parser = parse_point)]
+    pub(crate) at: [usize; 2],
+    /// Cut this part out of the result: left column, top row, width and height
+    #[arg(long, value_name = "X,Y,WIDTH,HEIGHT", value_parser = parse_rect)]
+    pub(crate) crop: Option<Rect>,
+    #[command(flatten)]
+    pub(crate) out: GoalOut,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct MotionArgs {
+    /// The sequence: a folder of pictures, an animation or a video
+    pub(crate) sequence: PathBuf,
+    #[command(flatten)]
+    pub(crate) out: GoalOut,
+    #[command(flatten)]
+    pub(crate) motion: MotionOptions,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct GoalOut {
+    /// The file to write, a PNG
+    #[arg(long, value_name = "FILE.png", default_value = "goal.png")]
+    pub(crate) out: PathBuf,
+    /// Write over a file that is there already
+    #[arg(long)]
+    pub(crate) force: bool,
+}
+
+fn parse_numbers<const N: usize>(text: &str, expected: &str) -> Result<[usize; N], String> {
+    let numbers: Result<Vec<usize>, _> = text.split(',').map(|part| part.trim().parse()).collect();
+    let numbers = numbers.ok().and_then(|numbers| numbers.try_into().ok());
+    numbers.ok_or_else(|| format!("expected {expected}, as whole numbers of pixels"))
+}
+
+fn parse_point(text: &str) -> Result<[usize; 2], String> {
+    parse_numbers(text, "X,Y")
+}
+
+fn parse_rect(text: &str) -> Result<Rect, String> {
+    let [x, y, width, height] = parse_numbers(text, "X,Y,WIDTH,HEIGHT")?;
+    if width == 0 || height == 0 {
+        return Err("expected a width and a height of at least 1".to_owned());
+    }
+    Ok(Rect { x, y, width, height })
 }
 
 #[derive(Debug, Args)]

@@ -11,6 +11,7 @@ use crate::printer::Printer;
 mod args;
 mod commands;
 mod error;
+mod files;
 mod printer;
 #[cfg(feature = "train")]
 mod progress;

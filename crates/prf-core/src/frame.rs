@@ -83,6 +83,16 @@ impl Frame {
         self.pixels.fill(value);
     }
 
+    /// Makes every pixel black whose counterpart in `mask`, of the same width and height, is.
+    pub(crate) fn blacken_outside(&mut self, mask: FrameView<'_>) {
+        debug_assert_eq!([self.width, self.height], [mask.width, mask.height]);
+        for (pixel, &mask) in self.pixels.iter_mut().zip(mask.pixels) {
+            if mask == 0 {
+                *pixel = 0;
+            }
+        }
+    }
+
     /// The picture, borrowed.
     #[must_use]
     pub fn view(&self) -> FrameView<'_> {

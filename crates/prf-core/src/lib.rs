@@ -45,6 +45,7 @@ mod error;
 #[cfg(feature = "explain")]
 mod explain;
 mod frame;
+mod goal_check;
 mod gradient;
 mod hog;
 #[cfg(feature = "io")]
@@ -68,6 +69,7 @@ pub use error::{Error, PictureProblem};
 #[cfg(feature = "explain")]
 pub use explain::{Picture, draw_explanation};
 pub use frame::{Frame, FrameView};
+pub use goal_check::{GoalWarning, check_goal};
 pub use hog::{CellSize, Hog, HogLayout, HogParams, Norm};
 pub use matching::{Match, MatchMethod, TemplateMatcher};
 pub use motion::{DeltaSchedule, MotionParams, MotionState, MotionTemplate};

@@ -8,6 +8,7 @@ use crate::printer::Printer;
 mod completions;
 #[cfg(feature = "train")]
 mod eval;
+mod goal;
 pub(crate) mod init;
 #[cfg(feature = "train")]
 mod learning;
@@ -25,6 +26,7 @@ pub(crate) fn run(command: Command, printer: &mut Printer) -> Result<ExitStatus>
         #[cfg(not(feature = "train"))]
         Command::Train(_) | Command::Eval(_) => Err(without_training()),
         Command::Score(args) => score::run(&args, printer),
+        Command::Goal(args) => goal::run(&args, printer),
         Command::Init(args) => init::run(&args, printer),
         Command::Completions(args) => completions::run(&args, printer),
     }

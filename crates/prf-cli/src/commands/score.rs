@@ -3,19 +3,20 @@
 use std::path::{Path, PathBuf};
 
 use prf_core::io::{self, FrameInfo, FrameSource, Limits};
-use prf_core::{Frame, Match, Score, TaskDescriptor, draw_explanation};
+use prf_core::{Frame, Goal, GoalWarning, Match, Score, TaskDescriptor, check_goal, draw_explanation};
 use serde::Serialize;
 
 use crate::ExitStatus;
 use crate::args::ScoreArgs;
 use crate::error::{CliError, Result};
+use crate::files::write_whole;
 use crate::printer::{Format, Printer};
-use crate::settings::{read_goal, reward_settings};
+use crate::settings::{RewardSettings, read_goal, reward_settings};
 
 pub(crate) fn run(args: &ScoreArgs, printer: &mut Printer) -> Result<ExitStatus> {
     let settings = reward_settings(&args.reward)?;
     let goal = read_goal(&args.goal, settings.mask.as_deref(), &settings.descriptor)?;
-    warn_of_flat_goal(&args.goal, &goal.picture, printer);
+    warn_of_goal(&args.goal, &goal, &settings, printer);
     let descriptor = settings
         .descriptor
         .describe(&goal, settings.params)
@@ -90,7 +91,7 @@ impl Scoring {
     fn explain(&self, path: &Path, printer: &mut Printer) -> Result<()> {
         let Some(name) = &self.scored else { return Ok(()) };
         let picture = draw_explanation(&self.descriptor.explain(self.frame.view()), name);
-        io::write_picture(&picture, path)?;
+        write_whole(path, &io::picture_png(&picture), true)?;
         printer.note(format_args!("drew what was compared in {name} into {}", path.display()));
         Ok(())
     }
@@ -212,21 +213,14 @@ fn short(value: f32) -> String {
     if value != 0.0 && value < 1e-4 { format!("{value:.3e}") } else { format!("{value:.6}") }
 }
 
-/// A goal without edges looks to HOG like a black picture, which few people mean by it.
-fn warn_of_flat_goal(path: &Path, goal: &Frame, printer: &mut Printer) {
-    let pixels = goal.as_slice();
-    let first = pixels[0];
-    if pixels.iter().any(|&pixel| pixel != first) {
-        return;
-    }
-    let path = path.display();
-    if first == 0 {
-        printer.note(format_args!("{path} is all black: the emptier a frame, the higher its reward"));
-    } else {
-        printer.warning(
-            format_args!("{path} is one even grey: it has no edges that a frame could share"),
-            Some("show the finished task itself, or an all black picture to reward emptiness"),
-        );
+fn warn_of_goal(path: &Path, goal: &Goal, settings: &RewardSettings, printer: &mut Printer) {
+    // A goal that cannot be used at all is an error in a moment.
+    for warning in check_goal(goal, settings.descriptor.kind(), settings.params).unwrap_or_default() {
+        let words = format!("{}: {warning}", path.display());
+        match warning {
+            GoalWarning::Black => printer.note(format_args!("{words}: {}", warning.hint())),
+            _ => printer.warning(words, Some(warning.hint())),
+        }
     }
 }
 

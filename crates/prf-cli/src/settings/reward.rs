@@ -2,12 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use prf_core::{CellSize, DeltaSchedule, DescriptorKind, DescriptorParams, RewardParams};
+use prf_core::{CellSize, DeltaSchedule, DescriptorKind, DescriptorParams, MotionParams, RewardParams};
 use prf_envs::{RewardConfig, RewardSource};
 use serde::Deserialize;
 
 use super::{Source, load, misfit};
-use crate::args::RewardArgs;
+use crate::args::{MotionOptions, RewardArgs};
 use crate::error::{CliError, Result};
 
 /// How frames are scored.
@@ -73,7 +73,7 @@ fn apply(args: &RewardArgs, config: &mut RewardConfig) -> Result<()> {
     hog.norm = args.norm.map_or(hog.norm, Into::into);
     config.scale = args.scale.map_or(config.scale, Into::into);
     apply_window(args, config)?;
-    apply_motion(args, config)
+    apply_motion(&args.motion, config)
 }
 
 fn apply_window(args: &RewardArgs, config: &mut RewardConfig) -> Result<()> {
@@ -87,7 +87,7 @@ fn apply_window(args: &RewardArgs, config: &mut RewardConfig) -> Result<()> {
     Ok(())
 }
 
-fn apply_motion(args: &RewardArgs, config: &mut RewardConfig) -> Result<()> {
+fn apply_motion(args: &MotionOptions, config: &mut RewardConfig) -> Result<()> {
     let Some(motion) = &mut config.motion else {
         let given = [
             ("--threshold", args.threshold.is_some()),
@@ -98,6 +98,11 @@ fn apply_motion(args: &RewardArgs, config: &mut RewardConfig) -> Result<()> {
         ];
         return refuse("motion", &given);
     };
+    change_motion(args, motion);
+    Ok(())
+}
+
+fn change_motion(args: &MotionOptions, motion: &mut MotionParams) {
     motion.threshold = args.threshold.unwrap_or(motion.threshold);
     motion.tau_start = args.tau_start.unwrap_or(motion.tau_start);
     motion.tau_step = args.tau_step.unwrap_or(motion.tau_step);
@@ -107,7 +112,24 @@ fn apply_motion(args: &RewardArgs, config: &mut RewardConfig) -> Result<()> {
     if let Some(duration) = args.duration {
         motion.delta = DeltaSchedule::Duration(duration);
     }
-    Ok(())
+}
+
+/// The motion template's parameters, from options alone.
+///
+/// # Errors
+///
+/// Misuse, pointing at the option that is out of range.
+pub(crate) fn motion_params(args: &MotionOptions) -> Result<MotionParams> {
+    let mut motion = MotionParams::default();
+    change_motion(args, &mut motion);
+    match motion.validate() {
+        Ok(()) => Ok(motion),
+        Err(prf_core::Error::InvalidParam { key, got, expected }) => {
+            let option = motion_option_for(&key, args).unwrap_or("the schedule");
+            Err(CliError::misuse(format!("{option}: got {got}, expected {expected}")).into())
+        }
+        Err(other) => Err(other.into()),
+    }
 }
 
 /// An option that would change nothing was meant for another descriptor.
@@ -141,11 +163,18 @@ fn option_for(key: &str, args: &RewardArgs) -> Option<&'static str> {
         "reward.hog.cell.px" => ("--cell-px", args.cell_px.is_some()),
         "reward.hog.orientations" => ("--orientations", args.orientations.is_some()),
         "reward.hog.block_cells" => ("--block-cells", args.block_cells.is_some()),
-        "reward.motion.threshold" => ("--threshold", args.threshold.is_some()),
-        "reward.motion.tau_start" => ("--tau-start", args.tau_start.is_some()),
-        "reward.motion.tau_step" => ("--tau-step", args.tau_step.is_some()),
-        "reward.motion.delta.divisor" => ("--delta-divisor", args.delta_divisor.is_some()),
-        "reward.motion.delta.duration" => ("--duration", args.duration.is_some()),
+        key => return motion_option_for(key.strip_prefix("reward.motion.")?, &args.motion),
+    };
+    used.then_some(option)
+}
+
+fn motion_option_for(key: &str, args: &MotionOptions) -> Option<&'static str> {
+    let (option, used) = match key {
+        "threshold" => ("--threshold", args.threshold.is_some()),
+        "tau_start" => ("--tau-start", args.tau_start.is_some()),
+        "tau_step" => ("--tau-step", args.tau_step.is_some()),
+        "delta.divisor" => ("--delta-divisor", args.delta_divisor.is_some()),
+        "delta.duration" => ("--duration", args.duration.is_some()),
         _ => return None,
     };
     used.then_some(option)

@@ -51,6 +51,17 @@ pub struct Goal {
     pub mask: Option<Frame>,
 }
 
+impl Goal {
+    /// The picture as it counts: black where the mask is.
+    pub(crate) fn seen(&self) -> Frame {
+        let mut seen = self.picture.clone();
+        if let Some(mask) = &self.mask {
+            seen.blacken_outside(mask.view());
+        }
+        seen
+    }
+}
+
 impl From<Frame> for Goal {
     fn from(picture: Frame) -> Goal {
         Goal { picture, mask: None }

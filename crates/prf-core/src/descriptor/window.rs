@@ -65,8 +65,8 @@ impl WindowDescriptor {
         let matcher = TemplateMatcher::new(goal, mask, window.method)?;
         let mut template = goal.clone();
         let cut_out = mask.map(|mask| {
-            template.as_mut_slice().iter_mut().zip(mask.as_slice()).for_each(blacken);
-            CutOut { mask: mask.clone(), template: Frame::new(goal.width(), goal.height()) }
+            template.blacken_outside(mask.view());
+            CutOut { mask: mask.clone(), template: template.clone() }
         });
         Ok(WindowDescriptor { matcher, comparison: Comparison::new(&template, params)?, cut_out, matched: None })
     }
@@ -87,21 +87,14 @@ impl TaskDescriptor for WindowDescriptor {
             return Ok(self.comparison.score(window));
         };
         for y in 0..mask.height() {
-            let row = template.row_mut(y);
-            row.copy_from_slice(window.row(y));
-            row.iter_mut().zip(mask.view().row(y)).for_each(blacken);
+            template.row_mut(y).copy_from_slice(window.row(y));
         }
+        template.blacken_outside(mask.view());
         Ok(self.comparison.score(template.view().region()))
     }
 
     fn explain<'a>(&'a self, mirror: FrameView<'a>) -> Explanation<'a> {
         self.comparison.explain(mirror, self.matched)
-    }
-}
-
-fn blacken((pixel, &mask): (&mut u8, &u8)) {
-    if mask == 0 {
-        *pixel = 0;
     }
 }
 

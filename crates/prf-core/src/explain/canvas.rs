@@ -160,6 +160,12 @@ impl Panel {
         }
     }
 
+    /// The panel with this many more pixels on each side, as far as there is room at the left and above.
+    pub(super) fn grown(self, by: usize) -> Panel {
+        let (left, top) = (self.left.saturating_sub(by), self.top.saturating_sub(by));
+        Panel { left, top, width: self.width + 2 * by, height: self.height + 2 * by }
+    }
+
     /// Two lines under the panel.
     pub(super) fn caption(self, picture: &mut Picture, [title, detail]: &[&str; 2]) {
         let below = self.top + self.height;

@@ -39,9 +39,10 @@ pub fn draw_explanation(explanation: &Explanation<'_>, name: &str) -> Picture {
     let differences = Differences::of(explanation);
 
     let [goal, agent, heat] = [0, 1, 2].map(|column| place(column, 0));
-    draw_frame(&mut picture, goal, explanation.goal, &[(explanation.goal_box, BOX)]);
+    draw_frame(&mut picture, goal, explanation.goal, explanation.goal_box, None);
     goal.caption(&mut picture, &["goal", &compared(explanation.goal_box)]);
-    draw_frame(&mut picture, agent, explanation.agent, &agent_boxes(explanation));
+    let window = explanation.matched.map(|matched| matched.rect);
+    draw_frame(&mut picture, agent, explanation.agent, explanation.agent_box, window);
     agent.caption(&mut picture, &["agent", &agent_words(explanation)]);
     heat::draw(&mut picture, heat, explanation.layout, &differences.cells);
     heat.caption(&mut picture, &["what differs: each cell's share of D²", &differences.words()]);
@@ -77,17 +78,15 @@ fn headline(picture: &mut Picture, explanation: &Explanation<'_>, name: &str) {
     picture.text(left, 22, &shortened(name, room), GREY);
 }
 
-fn draw_frame(picture: &mut Picture, panel: Panel, frame: FrameView<'_>, boxes: &[(Rect, canvas::Colour)]) {
+fn draw_frame(picture: &mut Picture, panel: Panel, frame: FrameView<'_>, compared: Rect, window: Option<Rect>) {
     let fitted = panel.fit(frame.width(), frame.height());
     picture.grey(fitted, |x, y| frame.row(y)[x], [frame.width(), frame.height()]);
-    for &(rect, colour) in boxes {
-        picture.outline(fitted.part([frame.width(), frame.height()], rect), colour);
+    let part = |rect| fitted.part([frame.width(), frame.height()], rect);
+    if let Some(window) = window {
+        // Around it, since what is compared often fills the window.
+        picture.outline(part(window).grown(2), WINDOW);
     }
-}
-
-fn agent_boxes(explanation: &Explanation<'_>) -> Vec<(Rect, canvas::Colour)> {
-    let window = explanation.matched.map(|matched| (matched.rect, WINDOW));
-    window.into_iter().chain([(explanation.agent_box, BOX)]).collect()
+    picture.outline(part(compared), BOX);
 }
 
 fn compared(rect: Rect) -> String {
@@ -105,8 +104,8 @@ fn agent_words(explanation: &Explanation<'_>) -> String {
 
 fn glyph_words(merged: usize) -> String {
     match merged {
-        1 => "a star a cell: its edges' directions".to_owned(),
-        n => format!("a star for {n}x{n} cells: their edges' directions"),
+        1 => "one star a cell, strokes along edges".to_owned(),
+        n => format!("one star for {n}x{n} cells"),
     }
 }
 
