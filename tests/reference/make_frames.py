@@ -5,8 +5,9 @@
     .venv/bin/python tests/reference/make_frames.py
 
 Running it again with the same versions gives the same bytes. The animations are put together here
-chunk by chunk, so that they hold every way of blending and disposing; Pillow (for WebP, libwebp) then
-says what they show. `index.json` lists the files with the time of each frame in milliseconds;
+chunk by chunk, so that they hold every way of blending and disposing. Pillow (for WebP, libwebp) then
+says what they show; only for APNG the specification's arithmetic is followed here, since Pillow takes
+another one for what is half transparent on both sides. `index.json` lists the files with the time of each frame in milliseconds;
 `frames.u8` holds the frames one after the other, a byte of grey a pixel: luma by Rec. 601, laid on
 black. The same files are what the fuzz targets and tests/decoders.rs begin with.
 """
@@ -179,15 +180,31 @@ def greys(pixels):
 def shown(data):
     """Every frame's pixels, and its time."""
     frames, time = [], 0
-    image = Image.open(io.BytesIO(data))
-    hidden = getattr(image, "default_image", False)
-    for i, frame in enumerate(ImageSequence.Iterator(image)):
-        pixels = np.asarray(frame.convert("RGBA"))
-        if hidden and i == 0:
-            continue
-        frames.append((time, greys(pixels)))
+    for frame in ImageSequence.Iterator(Image.open(io.BytesIO(data))):
+        frames.append((time, greys(np.asarray(frame.convert("RGBA")))))
         time += int(round(frame.info.get("duration", 0)))
     return frames
+
+
+def composed():
+    """What the APNGs show: colours with alpha, in floats."""
+    canvas, frames, time = np.zeros((HEIGHT, WIDTH, 4)), [], 0
+    for i, (x, y, width, height, delay, over, disposal) in enumerate(PATCHES):
+        before = canvas.copy()
+        here = canvas[y : y + height, x : x + width]
+        new = patch(i, width, height, [0, 100, 200, 255]) / 255
+        here[...] = laid_over(new, here) if over else new
+        frames.append((time, greys(canvas * 255)))
+        time += delay
+        if disposal != KEEP:
+            here[...] = 0 if disposal == BACKGROUND else before[y : y + height, x : x + width]
+    return frames
+
+
+def laid_over(new, old):
+    a, b = new[..., 3:], old[..., 3:] * (1 - new[..., 3:])
+    colours = (new[..., :3] * a + old[..., :3] * b) / np.maximum(a + b, 1e-9)
+    return np.concatenate([colours, a + b], axis=2)
 
 
 def main():
@@ -197,7 +214,7 @@ def main():
     index, values = [], []
     for name, data in files().items():
         (OUT / name).write_bytes(data)
-        frames = shown(data)
+        frames = composed() if name.startswith("moving") and name.endswith(".png") else shown(data)
         times = [time for time, _ in frames] if name.startswith("moving") else [None]
         index.append({"file": name, "width": WIDTH, "height": HEIGHT, "times_ms": times})
         values += [pixels.tobytes() for _, pixels in frames]

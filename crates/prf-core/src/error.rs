@@ -209,7 +209,7 @@ pub enum PictureProblem {
 
 #[cfg(feature = "io")]
 impl PictureProblem {
-    pub(crate) fn damaged(format: &str, detail: impl ToString) -> PictureProblem {
-        PictureProblem::Damaged { format: format.to_owned(), detail: detail.to_string().trim_end().to_owned() }
+    pub(crate) fn damaged(format: &str, detail: impl Into<String>) -> PictureProblem {
+        PictureProblem::Damaged { format: format.to_owned(), detail: detail.into().trim_end().to_owned() }
     }
 }

@@ -7,6 +7,7 @@ use std::fs;
 use std::path::PathBuf;
 
 #[path = "../../../fuzz/src/targets.rs"]
+#[expect(unreachable_pub, reason = "the fuzz targets are crates of their own")]
 mod targets;
 
 type Target = fn(&[u8]);

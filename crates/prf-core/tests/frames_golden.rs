@@ -1,4 +1,4 @@
-//! Pictures and animations against what Pillow shows. `tests/reference/make_frames.py` made the data.
+//! Pictures and animations against what others show of them. `tests/reference/make_frames.py` made the data.
 #![cfg(feature = "io")]
 #![expect(clippy::unwrap_used, reason = "a test may stop at the first surprise")]
 
@@ -54,7 +54,7 @@ fn assert_close(got: &Frame, expected: &[u8], case: &Case, index: usize) {
 }
 
 #[test]
-fn every_frame_is_what_pillow_shows() {
+fn every_frame_is_what_others_show() {
     for (case, expected) in cases() {
         let frames: Vec<_> = io::FrameSource::open(golden(&case.file)).unwrap().map(Result::unwrap).collect();
         assert_eq!(frames.len(), expected.len(), "{}", case.file);

@@ -169,7 +169,7 @@ fn crc(bytes: &[u8]) -> u32 {
 fn a_decompression_bomb_is_refused_from_its_header() {
     let dir = TempDir::new().unwrap();
     let path = dir.path().join("bomb.png");
-    for (width, height) in [(20_000, 20_000), (8_193, 1), (1, 8_193)] {
+    for (width, height) in [(20_000, 20_000), (8_193, 1), (1, 8_193), (i32::MAX as u32, i32::MAX as u32)] {
         fs::write(&path, png_header(width, height)).unwrap();
         let problem = problem(&path);
         let PictureProblem::TooLarge { width: w, height: h, .. } = problem else {
@@ -177,8 +177,6 @@ fn a_decompression_bomb_is_refused_from_its_header() {
         };
         assert_eq!((w, h), (width, height));
     }
-    fs::write(&path, png_header(i32::MAX as u32, i32::MAX as u32)).unwrap();
-    assert!(matches!(problem(&path), PictureProblem::Memory { .. }));
     fs::write(&path, png_header(20_000, 20_000)).unwrap();
     let message = io::read_frame(&path).unwrap_err().to_string();
     assert!(message.contains("20000x20000, expected at most 8192 on a side"), "{message}");

@@ -109,6 +109,6 @@ fn problem(error: DecodingError, limits: Limits) -> PictureProblem {
         }
         DecodingError::IoError(error) => PictureProblem::Io(error),
         DecodingError::LimitsExceeded => PictureProblem::Memory { format, max_pixels: limits.max_pixels },
-        error => PictureProblem::damaged(NAME, error),
+        error => PictureProblem::damaged(NAME, error.to_string()),
     }
 }

@@ -86,6 +86,6 @@ fn problem(error: DecodingError, limits: Limits) -> PictureProblem {
         DecodingError::OutOfMemory | DecodingError::MemoryLimit => {
             PictureProblem::Memory { format, max_pixels: limits.max_pixels }
         }
-        error => PictureProblem::damaged(NAME, error),
+        error => PictureProblem::damaged(NAME, error.to_string()),
     }
 }

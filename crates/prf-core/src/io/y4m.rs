@@ -47,7 +47,12 @@ impl<R: BufRead> Y4m<R> {
     /// Reads the header. `range` is that of a video that doesn't say which it has.
     pub(super) fn new(mut reader: R, limits: Limits, range: Range) -> Result<Y4m<R>, PictureProblem> {
         let mut line = Vec::new();
-        read_line(&mut reader, &mut line)?;
+        if read_line(&mut reader, &mut line)? == 0 {
+            return Err(truncated());
+        }
+        if !line.starts_with(MAGIC) {
+            return Err(misplaced(&line, "YUV4MPEG2"));
+        }
         let header = Header::parse(&String::from_utf8_lossy(&line), limits, range)?;
         Ok(Y4m { reader, header, line, count: 0 })
     }
@@ -78,8 +83,7 @@ impl<R: BufRead> Stream for Y4m<R> {
             return Ok(None);
         }
         if self.line != b"FRAME" && !self.line.starts_with(b"FRAME ") {
-            let start = self.line[..self.line.len().min(8)].escape_ascii();
-            return Err(PictureProblem::damaged(NAME, format!("a frame begins with \"{start}\" instead of FRAME")));
+            return Err(misplaced(&self.line, "FRAME"));
         }
         self.read_into(frame)?;
         let time_s = self.time_s();
@@ -157,6 +161,12 @@ const FULL: [u8; 256] = {
 
 fn problem(error: io::Error) -> PictureProblem {
     if error.kind() == ErrorKind::UnexpectedEof { truncated() } else { PictureProblem::Io(error) }
+}
+
+/// A line that doesn't begin as it should.
+fn misplaced(line: &[u8], expected: &str) -> PictureProblem {
+    let start = line[..line.len().min(8)].escape_ascii();
+    PictureProblem::damaged(NAME, format!("\"{start}\" stands where {expected} should"))
 }
 
 fn truncated() -> PictureProblem {

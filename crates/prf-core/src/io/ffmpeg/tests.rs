@@ -57,8 +57,11 @@ fn open(name: &str) -> Result<Video, PictureProblem> {
     open_at(STAND_IN.1.as_os_str(), &video(&dir, name))
 }
 
-/// The frames with their times, and the error that ended them.
-fn frames(name: &str) -> (Vec<(Vec<u8>, Option<f64>)>, Option<PictureProblem>) {
+/// A frame's pixels and its time in seconds.
+type Seen = (Vec<u8>, Option<f64>);
+
+/// The frames, and the error that ended them.
+fn frames(name: &str) -> (Vec<Seen>, Option<PictureProblem>) {
     let mut video = open(name).expect(name);
     let (mut frame, mut seen) = (Frame::new(1, 1), Vec::new());
     loop {
