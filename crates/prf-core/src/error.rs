@@ -151,6 +151,14 @@ pub enum PictureProblem {
         /// The decoder's own words.
         detail: String,
     },
+    /// The pixels are of a kind that is not read here.
+    #[error(
+        "the y4m has pixels of the kind {colours}, expected mono, 420, 422 or 444 with 8 bits a sample; convert it"
+    )]
+    Pixels {
+        /// The kind by its header.
+        colours: String,
+    },
     /// The picture has more pixels than are allowed; refused from its header.
     #[error(
         "the picture is {width}x{height}, expected at most {max_side} on a side and {max_pixels} \
@@ -174,7 +182,46 @@ pub enum PictureProblem {
         /// The most pixels in all.
         max_pixels: u64,
     },
+    /// There are more frames than are allowed.
+    #[error("there are more than {max_frames} frames, expected at most so many; take fewer, or raise the limit")]
+    TooManyFrames {
+        /// The most frames.
+        max_frames: u64,
+    },
+    /// The file is an animation or a video without a single frame.
+    #[error("the file holds no frame, expected at least one; save it again")]
+    NoFrames,
+    /// The folder holds no file that could be a picture.
+    #[error("the folder holds no picture, expected files of PNG, JPEG, BMP, WebP or GIF; check the path")]
+    NoPictures,
+    /// The file could only be a video, and the program that reads those is missing.
+    #[error(
+        "not a picture (it begins with {start}), and ffmpeg, which videos need, is not on PATH; install \
+         ffmpeg, or convert the file to PNG, GIF or y4m"
+    )]
+    NoFfmpeg {
+        /// The first bytes, printable.
+        start: String,
+    },
+    /// The file is no picture, and ffmpeg can't read it either.
+    #[error(
+        "not a picture (it begins with {start}), nor a video by ffmpeg ({detail}), expected one of both; \
+         convert it to PNG, GIF or y4m"
+    )]
+    NotAVideo {
+        /// The first bytes, printable.
+        start: String,
+        /// What ffmpeg says.
+        detail: String,
+    },
     /// The file can't be read or written at all.
     #[error("{0}")]
     Io(#[source] std::io::Error),
+}
+
+#[cfg(feature = "io")]
+impl PictureProblem {
+    pub(crate) fn damaged(format: &str, detail: impl Into<String>) -> PictureProblem {
+        PictureProblem::Damaged { format: format.to_owned(), detail: detail.into().trim_end().to_owned() }
+    }
 }

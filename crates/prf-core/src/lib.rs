@@ -35,6 +35,7 @@
 //! | what the network sees | [`EmaState`] |
 //! | does a reward order states rightly | [`spearman`] |
 //! | pictures in files (feature `io`) | `io::read_frame`, `io::write_frame` |
+//! | animations, videos, folders (feature `io`) | `io::FrameSource` |
 //!
 //! `docs/reward.md` in the repository has every formula with a worked example.
 

@@ -110,10 +110,8 @@ fn a_file_cut_anywhere_is_refused() {
         for len in [20, whole.len() / 8, whole.len() / 2, whole.len() * 9 / 10] {
             fs::write(&cut, &whole[..len]).unwrap();
             let problem = problem(&cut);
-            // WebP's decoder can't tell the one from the other.
             assert!(
-                matches!(problem, PictureProblem::Truncated { .. })
-                    || (format == WebP && matches!(problem, PictureProblem::Damaged { .. })),
+                matches!(problem, PictureProblem::Truncated { .. }),
                 "{format:?}, {len} of {} bytes: {problem:?}",
                 whole.len()
             );
@@ -171,7 +169,7 @@ fn crc(bytes: &[u8]) -> u32 {
 fn a_decompression_bomb_is_refused_from_its_header() {
     let dir = TempDir::new().unwrap();
     let path = dir.path().join("bomb.png");
-    for (width, height) in [(20_000, 20_000), (8_193, 1), (1, 8_193)] {
+    for (width, height) in [(20_000, 20_000), (8_193, 1), (1, 8_193), (i32::MAX as u32, i32::MAX as u32)] {
         fs::write(&path, png_header(width, height)).unwrap();
         let problem = problem(&path);
         let PictureProblem::TooLarge { width: w, height: h, .. } = problem else {
@@ -179,8 +177,6 @@ fn a_decompression_bomb_is_refused_from_its_header() {
         };
         assert_eq!((w, h), (width, height));
     }
-    fs::write(&path, png_header(i32::MAX as u32, i32::MAX as u32)).unwrap();
-    assert!(matches!(problem(&path), PictureProblem::Memory { .. }));
     fs::write(&path, png_header(20_000, 20_000)).unwrap();
     let message = io::read_frame(&path).unwrap_err().to_string();
     assert!(message.contains("20000x20000, expected at most 8192 on a side"), "{message}");
@@ -190,7 +186,9 @@ fn a_decompression_bomb_is_refused_from_its_header() {
 fn limits_can_be_chosen() {
     let dir = TempDir::new().unwrap();
     let path = saved(&dir, "a.png", &picture(40, 30), ImageFormat::Png);
-    let within = |max_side, max_pixels| io::read_frame_within(&path, io::Limits { max_side, max_pixels });
+    let within = |max_side, max_pixels| {
+        io::read_frame_within(&path, io::Limits { max_side, max_pixels, ..io::Limits::default() })
+    };
     assert!(within(40, 1200).is_ok());
     assert!(within(39, 1200).is_err());
     assert!(within(40, 1199).is_err());
