@@ -18,8 +18,9 @@ use crate::{Error, Frame, PictureProblem};
 /// videos of every kind; of more than one video in the file it takes the first.
 ///
 /// Frames are read one by one, so memory doesn't grow with their number; only the names of a folder's
-/// pictures are all kept. A y4m and a video give the luma that they hold, with black at 0 and white at
-/// 255. A video whose frames are not equally far apart is brought to one rate by ffmpeg.
+/// pictures are all kept. A y4m (8 bits: mono, 4:2:0, 4:2:2 or 4:4:4) and a video give the luma that
+/// they hold, with black at 0 and white at 255: from 16 and 235 in a y4m that doesn't say
+/// `XCOLORRANGE=FULL`. A video whose frames are not equally far apart is brought to one rate by ffmpeg.
 ///
 /// In a folder every file counts that is named like a picture or begins like one. Hidden files, folders
 /// and other files are left out.
