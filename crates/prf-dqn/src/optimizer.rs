@@ -132,6 +132,15 @@ mod tests {
     }
 
     #[test]
+    fn moments_without_gradients_come_to_rest() {
+        let steps = std::iter::once(1.0).chain(std::iter::repeat_n(0.0, 80_000));
+        let steps: Vec<_> = steps.map(|gradient| (vec![gradient; 3], 1e-3)).collect();
+        let (_, adam) = parameters_after(&steps, true);
+        let (first, second, _) = adam.to_parts().expect("parts");
+        assert_eq!((first, second), (vec![0.0; 3], vec![0.0; 3]));
+    }
+
+    #[test]
     fn restored_moments_continue_to_the_same_bits() {
         let steps: Vec<_> = (0..4).map(|step| (gradients(1000, step), 1e-3)).collect();
         let (whole, _) = parameters_after(&steps, true);

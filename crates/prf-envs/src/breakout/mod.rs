@@ -33,6 +33,9 @@ const ACTIONS: [&str; 3] = ["stay", "left", "right"];
 const LAUNCH_TOP: i32 = physics::WALL_BOTTOM + 3;
 /// How many rows it may be in; from the lowest, the ball takes 10 steps to come down.
 const LAUNCH_ROWS: usize = 16;
+/// Steps that the paddle may idle away at the start. The first picture doesn't show where the ball is going; a
+/// player who has only pictures to go by needs a few to see it.
+const SLACK_STEPS: i32 = 6;
 
 /// The world Breakout.
 #[derive(Clone, Debug)]
@@ -116,7 +119,7 @@ impl Environment for Breakout {
 
 impl Game {
     /// The start that belongs to `seed`: the ball comes down from somewhere below the wall, and the paddle is
-    /// somewhere from where it can be there in time.
+    /// somewhere from where it can be there in time with [`SLACK_STEPS`] to spare.
     fn launch(seed: u64) -> Game {
         let mut rng = stream(seed, "breakout-launch", 0);
         let mut draw = |n: usize| below(&mut rng, n) as i32;
@@ -128,7 +131,7 @@ impl Game {
         };
         let field = Field { wall: Wall::FULL, ball };
         let landing = field.landing();
-        let reach = PADDLE_SPEED * landing.steps;
+        let reach = PADDLE_SPEED * (landing.steps - SLACK_STEPS);
         let first = (landing.x - physics::PADDLE_WIDTH + 1 - reach).max(0);
         let last = (landing.x + physics::BALL - 1 + reach).min(PADDLE_MAX_X);
         let paddle = first + draw((last - first + 1) as usize);
