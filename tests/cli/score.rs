@@ -5,6 +5,7 @@ use std::io::{BufRead as _, BufReader, Read as _};
 use std::path::Path;
 use std::process::{self, Stdio};
 
+use image::GrayImage;
 use predicates::prelude::*;
 use predicates::str::{contains, is_empty, starts_with};
 use serde_json::Value;
@@ -128,7 +129,11 @@ fn options_out_of_range_are_misuse() {
         ("--block-cells=0", "--block-cells: got 0"),
         ("--norm=l3", "possible values: none, l1, l1-sqrt, l2, l2-hys"),
         ("--orientations=many", "--orientations"),
-        ("--descriptor=window", "possible values: direct"),
+        ("--descriptor=windows", "possible values: direct, window, motion"),
+        ("--method=ccoeff-normed", "--method is for --descriptor window"),
+        ("--mask=goal.png", "--mask is for --descriptor window"),
+        ("--tau-step=0.3", "--tau-step is for --descriptor motion"),
+        ("--max-frames=few", "--max-frames"),
     ];
     for (option, told) in cases {
         prf(folder.path())
@@ -220,8 +225,8 @@ fn goals_that_say_nothing_are_pointed_out() {
         score.args(["score", goal, "bars1.png"]);
         String::from_utf8_lossy(&score.assert().success().get_output().stderr).into_owned()
     };
-    assert!(told("grey.png").starts_with("warning: grey.png is one even grey"));
-    assert!(told("goal.png").starts_with("note: goal.png is all black"));
+    assert!(told("grey.png").starts_with("warning: grey.png: what is compared of the goal is one even grey (128)"));
+    assert!(told("goal.png").starts_with("note: goal.png: the goal is all black"));
     assert_eq!(told("bars5.png"), "");
 }
 
@@ -238,6 +243,127 @@ fn rewards_that_say_nothing_are_pointed_out() {
         .assert()
         .success()
         .stderr(contains("warning: no reward is above ").and(contains("--scale sqrt-blocks")));
+}
+
+/// `bars5.png` cut out at (4, 4), 30×20 px.
+fn window(folder: &TempDir) {
+    prf(folder.path())
+        .args(["goal", "crop", "bars5.png", "--rect", "4,4,30,20", "--out", "window.png"])
+        .assert()
+        .success();
+}
+
+#[test]
+fn a_window_is_found_and_its_place_is_told() {
+    let folder = folder();
+    window(&folder);
+    for method in ["ccorr-normed", "ccoeff-normed"] {
+        let args = ["window.png", "bars5.png", "--descriptor", "window", "--method", method];
+        let records = scores(folder.path(), &args);
+        assert_eq!(records[0]["reward"], 1.0, "{records:?}");
+        let found = &records[0]["match"];
+        let place = ["x", "y", "width", "height"].map(|key| found[key].as_u64().expect("a whole number"));
+        assert_eq!(place, [4, 4, 30, 20]);
+        assert!((found["score"].as_f64().expect("a number") - 1.0).abs() < 1e-4);
+    }
+    prf(folder.path())
+        .args(["score", "window.png", "bars5.png", "--descriptor", "window"])
+        .assert()
+        .stdout("bars5.png: reward 1.000000, distance 0.000000, best match 1.000 at (4, 4)\n");
+}
+
+#[test]
+fn a_mask_takes_pixels_out_of_the_window() {
+    let folder = folder();
+    window(&folder);
+    let mut mask = GrayImage::new(30, 20);
+    (0..20).for_each(|y| (0..15).for_each(|x| mask.put_pixel(x, y, image::Luma([255]))));
+    mask.save(folder.path().join("mask.png")).expect("the folder is ours");
+    let mut frame = image::open(folder.path().join("bars5.png")).expect("a picture").into_luma8();
+    (4..24).for_each(|y| (20..34).for_each(|x| frame.put_pixel(x, y, image::Luma([255]))));
+    frame.save(folder.path().join("half.png")).expect("the folder is ours");
+    let score =
+        |more: &[&str]| rewards(folder.path(), &[&["window.png", "half.png", "--descriptor=window"], more].concat())[0];
+    assert_eq!(score(&["--mask=mask.png"]), 1.0);
+    assert!(score(&[]) < 0.9);
+}
+
+#[test]
+fn a_window_larger_than_a_frame_is_a_loss() {
+    let folder = folder();
+    window(&folder);
+    GrayImage::new(29, 40).save(folder.path().join("narrow.png")).expect("the folder is ours");
+    prf(folder.path())
+        .args(["score", "window.png", "narrow.png", "bars5.png", "--descriptor", "window"])
+        .assert()
+        .code(3)
+        .stderr(contains("30x20").and(contains("29x40")));
+}
+
+#[test]
+fn an_animation_and_a_folder_are_scored_frame_by_frame() {
+    let folder = folder();
+    fs::create_dir(folder.path().join("frames")).expect("the folder is ours");
+    for count in [1, 5, 9, 10] {
+        pictures::bars(&folder.path().join(format!("frames/bar{count}.png")), count);
+    }
+    fs::write(folder.path().join("frames/notes.txt"), "not a picture").expect("the folder is ours");
+    let records = scores(folder.path(), &["goal.png", "frames", "bars1.png"]);
+    let sources: Vec<_> = records.iter().map(|record| record["source"].as_str().expect("a name")).collect();
+    let expected = ["frames/bar1.png", "frames/bar5.png", "frames/bar9.png", "frames/bar10.png", "bars1.png"];
+    assert_eq!(sources, expected);
+    assert_eq!(records[0]["reward"], records[4]["reward"]);
+
+    let mut gif = image::codecs::gif::GifEncoder::new(fs::File::create(folder.path().join("a.gif")).expect("ours"));
+    for name in ["bars1.png", "bars5.png"] {
+        let frame = image::open(folder.path().join(name)).expect("a picture").into_rgba8();
+        let delay = image::Delay::from_numer_denom_ms(250, 1);
+        gif.encode_frame(image::Frame::from_parts(frame, 0, 0, delay)).expect("it is a frame");
+    }
+    drop(gif);
+    let records = scores(folder.path(), &["goal.png", "a.gif"]);
+    assert_eq!(records.iter().map(|record| record["time_s"].as_f64()).collect::<Vec<_>>(), [Some(0.0), Some(0.25)]);
+    prf(folder.path())
+        .args(["score", "goal.png", "a.gif", "--max-frames", "1"])
+        .assert()
+        .code(3)
+        .stderr(contains("--max-frames").or(contains("frames")));
+}
+
+#[test]
+fn the_motion_of_the_goal_itself_is_the_goal() {
+    let folder = folder();
+    for name in ["right", "down"] {
+        fs::create_dir(folder.path().join(name)).expect("the folder is ours");
+        for step in 0..5 {
+            let [dx, dy] = if name == "right" { [3 * step, 0] } else { [0, 3 * step] };
+            let lit = |x: u32, y: u32| (4 + dx..12 + dx).contains(&x) && (4 + dy..10 + dy).contains(&y);
+            GrayImage::from_fn(32, 32, |x, y| image::Luma([if lit(x, y) { 255 } else { 0 }]))
+                .save(folder.path().join(format!("{name}/{step}.png")))
+                .expect("the folder is ours");
+        }
+    }
+    let motion = |frames| rewards(folder.path(), &["right", frames, "--descriptor", "motion"]);
+    let (right, down) = (motion("right"), motion("down"));
+    assert_eq!(right[4], 1.0);
+    assert!(down[4] < 0.9, "{down:?}");
+    // A template made before is taken as it is.
+    prf(folder.path()).args(["goal", "motion", "right", "--out", "right.png"]).assert().success();
+    assert_eq!(rewards(folder.path(), &["right.png", "right", "--descriptor", "motion"]), right);
+}
+
+#[test]
+fn explanations_are_drawn() {
+    let folder = folder();
+    window(&folder);
+    prf(folder.path())
+        .args(["score", "window.png", "bars1.png", "bars5.png", "--descriptor", "window", "--explain", "why.png"])
+        .assert()
+        .success()
+        .stderr(contains("drew what was compared in bars5.png into why.png"));
+    let picture = image::open(folder.path().join("why.png")).expect("a PNG").into_rgb8();
+    let orange = picture.pixels().filter(|pixel| pixel.0 == [255, 150, 0]).count();
+    assert!(picture.dimensions() == (1160, 882) && orange > 100, "{:?}, {orange}", picture.dimensions());
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Writing results: whole or not at all, and never over a file unasked.
 
 use std::fs;
-use std::io::{self, Write};
+use std::io::{self, Write as _};
 use std::path::Path;
 
 use crate::error::{CliError, Result};

@@ -69,7 +69,7 @@ fn row(states: &[State], params: RewardParams) -> Result<(), Box<dyn Error>> {
     let scored: Vec<(f64, f64, f64)> = states
         .iter()
         .map(|state| {
-            let score = descriptor.observe(state.frame.view());
+            let score = descriptor.observe(state.frame.view()).expect("a direct descriptor takes any frame");
             (state.cleared, -f64::from(score.distance), (-f64::from(score.distance)).exp())
         })
         .collect();

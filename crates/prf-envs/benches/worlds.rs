@@ -1,7 +1,7 @@
 //! Steps a second: a world with its picture, and a whole task with its reward.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use prf_core::Frame;
+use prf_core::{Frame, Goal};
 use prf_envs::{EnvConfig, Environment, RewardConfig, StateConfig, Task, TaskConfig, registry};
 
 fn world(criterion: &mut Criterion) {
@@ -33,7 +33,7 @@ fn step(world: &mut dyn Environment, seed: &mut u64) {
 }
 
 fn task(criterion: &mut Criterion) {
-    let goal = Frame::new(84, 84);
+    let goal = Goal::from(Frame::new(84, 84));
     let tasks = [
         ("perceptual", RewardConfig::perceptual("black.png"), Some(&goal)),
         ("variable", RewardConfig::variable(), None),

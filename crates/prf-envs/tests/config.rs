@@ -1,7 +1,7 @@
 //! The tables of a task in a config file.
 
-use prf_core::{CellSize, DistanceScale, Norm};
-use prf_envs::{DescriptorKind, EnvConfig, RewardConfig, RewardSource, StateConfig, StateKind, TaskConfig};
+use prf_core::{CellSize, DeltaSchedule, DescriptorKind, DescriptorParams, DistanceScale, MatchMethod, Norm};
+use prf_envs::{EnvConfig, RewardConfig, RewardSource, StateConfig, StateKind, TaskConfig};
 
 const PERCEPTUAL: &str = r#"
     [env]
@@ -77,6 +77,43 @@ fn every_key_is_read() {
 }
 
 #[test]
+fn each_descriptor_has_its_table_and_its_cells() {
+    let text = |descriptor: &str, more: &str| {
+        format!(
+            "env.name = \"breakout\"\n[reward]\nsource = \"perceptual\"\ndescriptor = \"{descriptor}\"\ngoal = \"g.png\"\n{more}"
+        )
+    };
+    let window = parse(&text("window", "window = { method = \"ccoeff-normed\", mask = \"mask.png\" }"));
+    window.validate().expect("the config is valid");
+    let Some(DescriptorParams::Window(params)) = window.reward.descriptor_params() else { panic!("{window:?}") };
+    assert_eq!(params.method, MatchMethod::CcoeffNormed);
+    assert_eq!(window.reward.hog.cell, CellSize::Fraction(0.1));
+
+    let motion = parse(&text("motion", "motion = { tau_step = 0.3, delta = { divisor = 4 } }"));
+    motion.validate().expect("the config is valid");
+    let Some(DescriptorParams::Motion(params)) = motion.reward.descriptor_params() else { panic!("{motion:?}") };
+    assert_eq!((params.tau_start, params.tau_step, params.delta), (0.1, 0.3, DeltaSchedule::Divisor(4.0)));
+    assert_eq!(motion.reward.hog.cell, CellSize::Fraction(0.05));
+    assert_eq!(parse(&text("motion", "hog.cell.px = 7")).reward.hog.cell, CellSize::Px(7));
+
+    // Written out, nothing is left to be filled in.
+    for config in [window, motion, parse(&text("window", "")), parse(&text("motion", ""))] {
+        let written = toml::to_string(&config).expect("a config can be written");
+        assert_eq!(parse(&written), config, "{written}");
+        assert_eq!(written.contains("method"), written.contains("\"window\""), "{written}");
+        assert_eq!(written.contains("tau_step"), written.contains("\"motion\""), "{written}");
+    }
+    for (descriptor, more, expected) in [
+        ("direct", "window = {}", "reward.window: got a value, expected nothing, because reward.descriptor is not"),
+        ("window", "motion.threshold = 3", "reward.motion: got a value, expected nothing"),
+        ("motion", "motion.tau_step = 0", "reward.motion.tau_step: got 0, expected "),
+    ] {
+        let complaint = complaint(&parse(&text(descriptor, more)));
+        assert!(complaint.starts_with(expected), "{complaint}");
+    }
+}
+
+#[test]
 fn a_written_config_is_complete_and_reads_back_the_same() {
     for text in [PERCEPTUAL, VARIABLE, &format!("{PERCEPTUAL}hog.cell.px = 3\n")] {
         let config = parse(text);
@@ -119,7 +156,10 @@ fn values_out_of_range_are_named_by_their_full_key() {
     };
     check(|c| c.env = EnvConfig::new("pong"), "env.name: got \"pong\", expected \"breakout\"");
     check(|c| c.env.limit_steps = 0, "env.limit_steps: got 0, expected at least 1");
-    check(|c| c.reward.descriptor = None, "reward.descriptor: got nothing, expected \"direct\"");
+    check(
+        |c| c.reward.descriptor = None,
+        "reward.descriptor: got nothing, expected \"direct\", \"window\" or \"motion\"",
+    );
     check(|c| c.reward.goal = None, "reward.goal: got nothing, expected the path of a picture of the finished task");
     check(|c| c.reward.hog.orientations = 0, "reward.hog.orientations: got 0, expected 1 to 64");
     check(|c| c.state.lambda = 1.0, "state.lambda: got 1, expected 0 or more, and below 1");

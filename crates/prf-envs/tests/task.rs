@@ -1,6 +1,6 @@
 //! A world with its reward and state representation.
 
-use prf_core::{DirectDescriptor, EmaState, Frame, TaskDescriptor};
+use prf_core::{DescriptorKind, DirectDescriptor, EmaState, Frame, Goal, TaskDescriptor};
 use prf_envs::{EnvConfig, Error, RewardConfig, StateConfig, StateKind, Status, Task, TaskConfig};
 use proptest::prelude::*;
 
@@ -10,7 +10,7 @@ fn config(reward: RewardConfig, kind: StateKind) -> TaskConfig {
 
 fn perceptual(kind: StateKind) -> Task {
     let config = config(RewardConfig::perceptual("black.png"), kind);
-    Task::new(&config, Some(&black())).expect("the config is valid")
+    Task::new(&config, Some(&black().into())).expect("the config is valid")
 }
 
 fn variable(kind: StateKind) -> Task {
@@ -35,7 +35,7 @@ fn the_perceptual_reward_is_that_of_the_frame_after_the_action() -> Result<(), E
     for _ in 0..100 {
         let step = task.step(oracle(&task))?;
         task.environment().draw_into(&mut frame);
-        assert_eq!(step.reward, descriptor.observe(frame.view()).reward);
+        assert_eq!(step.reward, descriptor.observe(frame.view())?.reward);
         assert_eq!(task.mirror(), &frame);
     }
     Ok(())
@@ -100,7 +100,7 @@ fn a_refused_step_changes_nothing() -> Result<(), Error> {
 
 #[test]
 fn goals_must_fit_the_source() {
-    let complaint = |reward, goal: Option<&Frame>| {
+    let complaint = |reward, goal: Option<&Goal>| {
         let error = Task::new(&config(reward, StateKind::Ema), goal).map(|_| ()).expect_err("the goal doesn't fit");
         error.to_string()
     };
@@ -109,9 +109,39 @@ fn goals_must_fit_the_source() {
         "reward.goal: got no picture, expected one for a perceptual reward"
     );
     assert_eq!(
-        complaint(RewardConfig::variable(), Some(&black())),
+        complaint(RewardConfig::variable(), Some(&black().into())),
         "reward.goal: got a picture, expected none for a variable reward"
     );
+    let window = RewardConfig::perceptual("goal.png").with_descriptor(DescriptorKind::Window);
+    let larger = Frame::from_vec(85, 40, vec![9; 85 * 40]).expect("85 x 40");
+    let error = complaint(window, Some(&larger.into()));
+    assert!(error.contains("85x40") && error.contains("84x84"), "{error}");
+}
+
+#[test]
+fn every_descriptor_rewards_and_resumes() -> Result<(), Error> {
+    // The goal: the first frame's paddle, or how it moves.
+    let mut world = variable(StateKind::Mirror);
+    world.reset(3);
+    let goal = Goal::from(world.mirror().clone());
+    for kind in [DescriptorKind::Direct, DescriptorKind::Window, DescriptorKind::Motion] {
+        let config = config(RewardConfig::perceptual("goal.png").with_descriptor(kind), StateKind::Ema);
+        let (mut whole, mut resumed) = (Task::new(&config, Some(&goal))?, Task::new(&config, Some(&goal))?);
+        whole.reset(3);
+        let play = |task: &mut Task, steps: usize| {
+            (0..steps).map(|_| task.step(oracle(task)).map(|step| step.reward)).collect::<Result<Vec<_>, _>>()
+        };
+        let rewards = play(&mut whole, 12)?;
+        assert!(rewards.iter().all(|&reward| reward > 0.0 && reward <= 1.0), "{kind:?}: {rewards:?}");
+        resumed.load_state(&whole.save_state())?;
+        assert_eq!(play(&mut whole, 12)?, play(&mut resumed, 12)?, "{kind:?}");
+        let mut other = variable(StateKind::Ema);
+        other.reset(3);
+        if kind == DescriptorKind::Motion {
+            assert!(matches!(other.load_state(&whole.save_state()), Err(Error::BadState { .. })));
+        }
+    }
+    Ok(())
 }
 
 #[test]

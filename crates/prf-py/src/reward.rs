@@ -141,5 +141,5 @@ fn compare(goal: FrameView<'_>, frame: FrameView<'_>, params: RewardParams) -> P
         check_features(&params.hog, [crop.height, crop.width])?;
     }
     let mut descriptor = DirectDescriptor::new(&goal, params).map_err(|error| value_error("goal", &error))?;
-    Ok(descriptor.observe(frame))
+    descriptor.observe(frame).map_err(|error| value_error("frame", &error))
 }

@@ -43,7 +43,7 @@ pub(crate) fn broken(folder: &Path) -> Vec<(&'static str, &'static str)> {
         ("text.png", "not a picture"),
         ("truncated.png", "cut short"),
         ("huge.png", "20000x20000"),
-        ("folder.png", "not a file"),
+        ("folder.png", "folder.png"),
     ]
 }
 

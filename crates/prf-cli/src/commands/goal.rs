@@ -6,7 +6,7 @@ use prf_core::io;
 use prf_core::{DescriptorKind, DescriptorParams, Frame, Goal, Rect, RewardParams, check_goal};
 
 use crate::ExitStatus;
-use crate::args::{CropArgs, GoalArgs, GoalCommand, GoalOut, MotionArgs, PasteArgs};
+use crate::args::{GoalArgs, GoalCommand, GoalOut, MotionArgs, PasteArgs};
 use crate::error::{CliError, Result};
 use crate::files::{refuse_existing, write_whole};
 use crate::printer::Printer;

@@ -1,14 +1,14 @@
 //! `prf init`: a config to start from, with its goal picture.
 
 use std::fs;
-use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 
 use crate::ExitStatus;
 use crate::args::InitArgs;
-use crate::error::{CliError, Result};
+use crate::error::Result;
+use crate::files::{refuse_existing, write_whole};
 use crate::printer::Printer;
 
 /// The configs that come with `prf`.

@@ -76,7 +76,7 @@ impl Scoring {
 
     fn take(&mut self, info: &FrameInfo, many: bool, score: Score, printer: &mut Printer) -> Result<()> {
         let matched = self.descriptor.explain(self.frame.view()).matched;
-        let record = Record::new(info, self.rewards.len(), score, matched);
+        let record = Record::new(info, self.rewards.len() + self.lost, score, matched);
         self.output.score(&record, many, printer)?;
         self.scored = Some(record.name(many));
         self.rewards.push(score.reward);
@@ -120,7 +120,7 @@ enum Output {
 #[derive(Serialize)]
 struct Record {
     source: String,
-    /// Place among all frames that were scored, from 0.
+    /// Place among all frames, from 0; those that could not be read count, too.
     index: usize,
     /// When the frame is shown, for what has times.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -175,7 +175,7 @@ impl Output {
     fn new(frames: &[PathBuf], format: Format) -> Self {
         match format {
             Format::Json => Self::Json,
-            Format::Text if frames.len() == 1 && frames[0].is_file() => Self::Sentence,
+            Format::Text if frames.len() == 1 && !frames[0].is_dir() => Self::Sentence,
             Format::Text => {
                 let width = |path: &PathBuf| path.to_string_lossy().chars().count();
                 let widest = frames.iter().map(width).max().unwrap_or(0);

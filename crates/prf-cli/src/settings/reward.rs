@@ -51,7 +51,7 @@ fn read(path: &Path) -> Result<(RewardConfig, Option<Source>)> {
     let (RewardTable { mut reward }, source) = load(path, &[])?;
     if reward.source == RewardSource::Variable {
         // Such a config says how its agent is rewarded, not how pictures are compared.
-        reward = RewardConfig::perceptual("");
+        reward = RewardConfig { scale: reward.scale, hog: reward.hog, ..RewardConfig::perceptual("") };
     }
     if let Some(mask) = reward.window.as_mut().and_then(|window| window.mask.as_mut()) {
         *mask = source.resolve("reward.window.mask", mask);

@@ -76,7 +76,8 @@ fn load_goal(reward: &RewardConfig, source: &Source) -> Result<Option<Goal>> {
     let (Some(path), Some(descriptor)) = (&reward.goal, reward.descriptor_params()) else { return Ok(None) };
     let mask = reward.window.as_ref().and_then(|window| window.mask.as_deref());
     let goal = read_goal(path, mask, &descriptor).map_err(|error| {
-        let key = if matches!(&error, prf_core::Error::Picture { path, .. } if Some(&**path) == mask) { MASK } else { GOAL };
+        let key =
+            if matches!(&error, prf_core::Error::Picture { path, .. } if Some(&**path) == mask) { MASK } else { GOAL };
         CliError::failed(format!("{}: `{key}`: {error}", source.locate(key)))
             .hint("name a picture of the finished task, such as a PNG")
     })?;

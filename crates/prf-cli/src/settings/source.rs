@@ -53,7 +53,6 @@ impl Source {
 
     /// The file that `path`, the value of `key`, means: relative to the config's folder, or to the
     /// current folder if it was typed on the command line.
-    #[cfg(any(feature = "train", test))]
     pub(crate) fn resolve(&self, key: &str, path: &std::path::Path) -> PathBuf {
         match self.path.parent() {
             Some(folder) if self.span_of(key).start <= self.text.len() => folder.join(path),

@@ -35,7 +35,8 @@ impl Explanation<'_> {
         let ([rows, columns], [_, block_columns]) = (self.layout.cells(), self.layout.blocks());
         let (orientations, block_cells) = (self.layout.orientations(), self.layout.block_cells());
         let mut differences = vec![0.0; rows * columns];
-        let histograms = self.agent_features.chunks_exact(orientations).zip(self.goal_features.chunks_exact(orientations));
+        let histograms =
+            self.agent_features.chunks_exact(orientations).zip(self.goal_features.chunks_exact(orientations));
         for (index, (agent, goal)) in histograms.enumerate() {
             let (block, cell) = (index / (block_cells * block_cells), index % (block_cells * block_cells));
             let row = block / block_columns + cell / block_cells;
@@ -76,7 +77,8 @@ mod tests {
         let (goal, mut frame) = (frame(1), frame(1));
         frame.row_mut(13)[19] ^= 0x80;
         let hog = HogParams { cell: CellSize::Px(6), ..HogParams::default() };
-        let mut descriptor = DirectDescriptor::new(&goal, RewardParams { hog, ..RewardParams::default() }).expect("valid");
+        let mut descriptor =
+            DirectDescriptor::new(&goal, RewardParams { hog, ..RewardParams::default() }).expect("valid");
         descriptor.observe(frame.view()).expect("any frame will do");
         let differences = descriptor.explain(frame.view()).cell_differences();
         let changed: Vec<usize> = (0..differences.len()).filter(|&cell| differences[cell] > 1e-9).collect();

@@ -73,8 +73,7 @@ fn star_place(panel: Panel, layout: HogLayout, [rows, columns]: &[std::ops::Rang
     let [height, width] = layout.shape().map(|side| side as f32);
     let scale = [panel.width as f32 / width, panel.height as f32 / height].map(|scale| scale * layout.cell_px() as f32);
     let middle = |range: &std::ops::Range<usize>| (range.start + range.end) as f32 / 2.0;
-    let centre =
-        [panel.left as f32 + middle(columns) * scale[0], panel.top as f32 + middle(rows) * scale[1]];
+    let centre = [panel.left as f32 + middle(columns) * scale[0], panel.top as f32 + middle(rows) * scale[1]];
     let radius = (columns.len() as f32 * scale[0]).min(rows.len() as f32 * scale[1]) / 2.0 - 0.5;
     (centre, radius)
 }

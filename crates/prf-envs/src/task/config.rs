@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use prf_core::{
-    CellSize, DescriptorKind, DescriptorParams, DistanceScale, Error as ParamError, HogParams, MatchMethod, MotionParams,
-    Norm, RewardParams, WindowParams,
+    CellSize, DescriptorKind, DescriptorParams, DistanceScale, Error as ParamError, HogParams, MatchMethod,
+    MotionParams, Norm, RewardParams, WindowParams,
 };
 use serde::{Deserialize, Serialize};
 

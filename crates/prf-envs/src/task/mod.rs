@@ -5,9 +5,7 @@ mod state;
 
 use prf_core::{Error as CoreError, Frame, Goal, TaskDescriptor};
 
-pub use self::config::{
-    EnvConfig, RewardConfig, RewardSource, StateConfig, StateKind, TaskConfig, WindowConfig,
-};
+pub use self::config::{EnvConfig, RewardConfig, RewardSource, StateConfig, StateKind, TaskConfig, WindowConfig};
 use self::state::Representation;
 use crate::bytes::Reader;
 use crate::{Environment, Error, Spec, Status, registry};
@@ -185,7 +183,9 @@ impl Reward {
         let before = self.save();
         match self {
             Reward::Variable if bytes.is_empty() => {}
-            Reward::Variable => return Err(bad_state(format!("{} bytes too many", bytes.len()), "none for this reward")),
+            Reward::Variable => {
+                return Err(bad_state(format!("{} bytes too many", bytes.len()), "none for this reward"));
+            }
             Reward::Perceptual(descriptor) => descriptor.load_state(bytes).map_err(|error| match error {
                 CoreError::Restore { got, expected } => bad_state(got, expected),
                 other => other.into(),
