@@ -323,6 +323,9 @@ fn an_animation_and_a_folder_are_scored_frame_by_frame() {
     drop(gif);
     let records = scores(folder.path(), &["goal.png", "a.gif"]);
     assert_eq!(records.iter().map(|record| record["time_s"].as_f64()).collect::<Vec<_>>(), [Some(0.0), Some(0.25)]);
+    let table = prf(folder.path()).args(["score", "goal.png", "a.gif"]).assert().success();
+    let text = String::from_utf8_lossy(&table.get_output().stdout).into_owned();
+    assert!(text.starts_with("source ") && text.contains("a.gif #1 (0.25 s)"), "{text}");
     prf(folder.path())
         .args(["score", "goal.png", "a.gif", "--max-frames", "1"])
         .assert()

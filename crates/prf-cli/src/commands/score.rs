@@ -29,11 +29,10 @@ pub(crate) fn run(args: &ScoreArgs, printer: &mut Printer) -> Result<ExitStatus>
         lost: 0,
         output: Output::new(&args.frames, printer.format()),
     };
-    scoring.output.begin(printer)?;
     let limits = Limits { max_frames: args.max_frames, ..Limits::default() };
     for path in &args.frames {
         match FrameSource::open_within(path, limits) {
-            Ok(source) => scoring.score(source, printer)?,
+            Ok(source) => scoring.score(path, source, printer)?,
             Err(error) => scoring.lose(error, printer),
         }
     }
@@ -43,6 +42,9 @@ pub(crate) fn run(args: &ScoreArgs, printer: &mut Printer) -> Result<ExitStatus>
     }
     scoring.status()
 }
+
+/// Room for where in a source a frame lies: " #1234 (123.45 s)".
+const PLACE: usize = 17;
 
 /// What one call has scored so far.
 struct Scoring {
@@ -58,8 +60,11 @@ struct Scoring {
 
 impl Scoring {
     /// All frames of a source.
-    fn score(&mut self, mut source: FrameSource, printer: &mut Printer) -> Result<()> {
+    fn score(&mut self, path: &Path, mut source: FrameSource, printer: &mut Printer) -> Result<()> {
         let many = source.len_hint() != Some(1);
+        if many && matches!(self.output, Output::Sentence) {
+            self.output = Output::Table { width: path.to_string_lossy().chars().count() + PLACE };
+        }
         let mut next = Frame::new(1, 1);
         while let Some(read) = source.next_into(&mut next) {
             let scored = read.and_then(|info| Ok((info, self.descriptor.observe(next.view())?)));
@@ -77,6 +82,9 @@ impl Scoring {
     fn take(&mut self, info: &FrameInfo, many: bool, score: Score, printer: &mut Printer) -> Result<()> {
         let matched = self.descriptor.explain(self.frame.view()).matched;
         let record = Record::new(info, self.rewards.len() + self.lost, score, matched);
+        if self.rewards.is_empty() {
+            self.output.begin(printer)?;
+        }
         self.output.score(&record, many, printer)?;
         self.scored = Some(record.name(many));
         self.rewards.push(score.reward);
@@ -175,13 +183,15 @@ impl Output {
     fn new(frames: &[PathBuf], format: Format) -> Self {
         match format {
             Format::Json => Self::Json,
-            Format::Text if frames.len() == 1 && !frames[0].is_dir() => Self::Sentence,
-            Format::Text => {
-                let width = |path: &PathBuf| path.to_string_lossy().chars().count();
-                let widest = frames.iter().map(width).max().unwrap_or(0);
-                Self::Table { width: widest.max("source".len()) }
-            }
+            Format::Text if frames.len() == 1 => Self::Sentence,
+            Format::Text => Self::table(frames),
         }
+    }
+
+    fn table(frames: &[PathBuf]) -> Self {
+        let width = |path: &PathBuf| path.to_string_lossy().chars().count();
+        let widest = frames.iter().map(width).max().unwrap_or(0);
+        Self::Table { width: widest.max("source".len()) }
     }
 
     fn begin(&self, printer: &mut Printer) -> Result<()> {
