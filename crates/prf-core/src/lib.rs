@@ -31,6 +31,7 @@
 //! | histograms of oriented gradients | [`Hog`], [`HogParams`], [`HogLayout`] |
 //! | distance and reward | [`RewardParams`], [`Score`] |
 //! | the goal, prepared once | [`TaskDescriptor`], [`DirectDescriptor`] |
+//! | where a picture lies in a larger one | [`TemplateMatcher`], [`MatchMethod`], [`Match`] |
 //! | what the network sees | [`EmaState`] |
 //! | does a reward order states rightly | [`spearman`] |
 //! | pictures in files (feature `io`) | `io::read_frame`, `io::write_frame` |
@@ -47,6 +48,7 @@ mod hog;
 #[cfg(feature = "io")]
 pub mod io;
 pub mod luma;
+mod matching;
 mod plane;
 mod rank;
 mod region;
@@ -59,6 +61,7 @@ pub use ema::EmaState;
 pub use error::{Error, PictureProblem};
 pub use frame::{Frame, FrameView};
 pub use hog::{CellSize, Hog, HogLayout, HogParams, Norm};
+pub use matching::{Match, MatchMethod, TemplateMatcher};
 pub use plane::{Plane, PlaneView};
 pub use rank::spearman;
 pub use resize::Resizer;
