@@ -70,6 +70,19 @@ pub enum Error {
         min: usize,
     },
 
+    /// A template is larger than the frames that it should be found in.
+    #[error(
+        "a template of {}x{} px doesn't fit into a frame of {}x{} px, expected one that is nowhere larger; crop the \
+         template or take larger frames",
+        template[1], template[0], frame[1], frame[0]
+    )]
+    TemplateTooLarge {
+        /// Shape of the template, `[height, width]` in pixels.
+        template: [usize; 2],
+        /// Shape of the frame, `[height, width]` in pixels.
+        frame: [usize; 2],
+    },
+
     /// A saved state doesn't belong to the object that should take it.
     #[error("the saved state holds {got}, expected {expected}")]
     Restore {

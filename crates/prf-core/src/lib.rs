@@ -32,6 +32,7 @@
 //! | distance and reward | [`RewardParams`], [`Score`] |
 //! | the goal, prepared once | [`TaskDescriptor`], [`DirectDescriptor`] |
 //! | where and when something moved | [`MotionTemplate`], [`MotionParams`], [`DeltaSchedule`] |
+//! | where a picture lies in a larger one | [`TemplateMatcher`], [`MatchMethod`], [`Match`] |
 //! | what the network sees | [`EmaState`] |
 //! | does a reward order states rightly | [`spearman`] |
 //! | pictures in files (feature `io`) | `io::read_frame`, `io::write_frame` |

@@ -36,6 +36,14 @@ impl Plane {
         }
     }
 
+    /// Gives it another size, both sides at least 1, and lends its pixels, which hold anything finite. Allocates only
+    /// to grow.
+    pub(crate) fn reshape(&mut self, width: usize, height: usize) -> &mut [f32] {
+        (self.width, self.height) = (width, height);
+        self.pixels.resize(width * height, 0.0);
+        &mut self.pixels
+    }
+
     /// Width in pixels.
     #[must_use]
     pub fn width(&self) -> usize {
