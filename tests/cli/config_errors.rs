@@ -174,6 +174,7 @@ fn errors_in_set_show_it_as_it_was_typed() {
         ("train.steps=abc", "`train.steps`: got string \"abc\", expected a whole number"),
         ("train.stepz=5", "unknown key `train.stepz`"),
         ("train.gamma=1.5", "`train.gamma`: got 1.5, expected "),
+        ("train.reward_scale=0", "`train.reward_scale`: got 0, expected a finite number above 0"),
         ("env.name=pong", "`env.name`: got \"pong\", expected \"breakout\""),
         ("train.steps", "there is no `=`"),
     ];

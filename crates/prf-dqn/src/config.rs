@@ -4,6 +4,8 @@ use prf_core::Error as ParamError;
 use prf_envs::{EnvConfig, RewardConfig, StateConfig, TaskConfig};
 use serde::{Deserialize, Serialize};
 
+use crate::learner::LearnerSettings;
+
 /// Everything that decides a training run. The same `RunConfig` on the same machine with the same
 /// number of threads gives the same run, bit by bit.
 #[derive(Debug, Clone, PartialEq, Deserialize, Serialize)]
@@ -63,6 +65,10 @@ pub struct TrainConfig {
     /// Discount γ, in [0, 1).
     #[serde(default = "default_gamma")]
     pub gamma: f32,
+    /// What rewards are multiplied by before they are learned from, above 0; 1 in the paper. Of an error above 1 the
+    /// loss sees little more than the sign, so values many times larger than 1 are learned less exactly.
+    #[serde(default = "default_reward_scale")]
+    pub reward_scale: f64,
     /// Steps whose rewards are summed before the target network's value takes over, 1..=100; 1 in the paper.
     #[serde(default = "default_n_step")]
     pub n_step: u32,
@@ -138,6 +144,9 @@ fn default_learning_rate() -> f64 {
 fn default_gamma() -> f32 {
     0.99
 }
+fn default_reward_scale() -> f64 {
+    1.0
+}
 fn default_n_step() -> u32 {
     1
 }
@@ -177,6 +186,12 @@ impl RunConfig {
 }
 
 impl TrainConfig {
+    /// What of it concerns an update.
+    pub(crate) fn learner(&self) -> LearnerSettings {
+        let Self { double, reward_scale, target_every_updates, .. } = *self;
+        LearnerSettings { double, reward_scale, target_every_updates }
+    }
+
     fn validate(&self) -> Result<(), ParamError> {
         match (self.steps, self.episodes) {
             (None, None) => {
@@ -210,6 +225,9 @@ impl TrainConfig {
         }
         if !(0.0..1.0).contains(&self.gamma) {
             return Err(invalid("train.gamma", &self.gamma, "a discount from 0 up to, but not including, 1"));
+        }
+        if !(self.reward_scale > 0.0 && self.reward_scale.is_finite()) {
+            return Err(invalid("train.reward_scale", &self.reward_scale, "a finite number above 0"));
         }
         self.epsilon.validate()
     }

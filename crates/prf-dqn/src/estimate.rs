@@ -8,7 +8,7 @@ use prf_envs::rng::stream;
 
 use crate::config::RunConfig;
 use crate::error::Result;
-use crate::learner::{Learner, LearnerSettings};
+use crate::learner::Learner;
 use crate::replay::{Batch, Replay};
 use crate::trainer::architecture;
 
@@ -37,8 +37,7 @@ impl Estimate {
         let mut task = Task::new(&config.task(), goal)?;
         let architecture = architecture(&task)?;
         let frame_len = task.observation().len();
-        let settings = LearnerSettings { double: train.double, target_every_updates: train.target_every_updates };
-        let mut learner = Learner::new(architecture, settings, device, &mut stream(0, "estimate", 0))?;
+        let mut learner = Learner::new(architecture, train.learner(), device, &mut stream(0, "estimate", 0))?;
 
         let count = train.batch_size;
         let batch = Batch {

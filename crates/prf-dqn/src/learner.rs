@@ -24,6 +24,8 @@ pub struct Learner {
 pub struct LearnerSettings {
     /// Double DQN.
     pub double: bool,
+    /// What rewards are multiplied by.
+    pub reward_scale: f64,
     /// Updates between copies to the target network.
     pub target_every_updates: u64,
 }
@@ -48,7 +50,8 @@ impl Learner {
     }
 
     /// Learns from a batch and returns its loss: the mean Huber loss (δ = 1) of
-    /// `r + γⁿ·Q_target(s′, a′) − Q(s, a)`, with `a′` the best action of the online network (double) or of the target.
+    /// `c·r + γⁿ·Q_target(s′, a′) − Q(s, a)`, with `a′` the best action of the online network (double) or of the target,
+    /// and `c` the reward scale.
     pub fn update(&mut self, batch: &Batch, learning_rate: f64) -> Result<f32> {
         let states = self.online.pictures(&batch.states, batch.len())?;
         let next_states = self.online.pictures(&batch.next_states, batch.len())?;
@@ -76,6 +79,7 @@ impl Learner {
             next_values.f_amax([1i64], false)?
         };
         let rewards = Tensor::f_from_slice(&batch.rewards)?.f_to_device(self.device)?;
+        let rewards = rewards.f_mul_scalar(self.settings.reward_scale)?;
         let discounts = Tensor::f_from_slice(&batch.discounts)?.f_to_device(self.device)?;
         Ok(rewards.f_addcmul(&discounts, &best)?)
     }
@@ -97,7 +101,7 @@ mod tests {
 
     fn learner(double: bool) -> Learner {
         let architecture = Architecture { input: [84, 84], actions: 3 };
-        let settings = LearnerSettings { double, target_every_updates: 1000 };
+        let settings = LearnerSettings { double, reward_scale: 0.5, target_every_updates: 1000 };
         Learner::new(architecture, settings, Device::Cpu, &mut stream(3, "network", 0)).expect("learner")
     }
 
@@ -137,7 +141,7 @@ mod tests {
             let chooser = if double { &online } else { &slow };
             let mut expected = 0.0;
             for (row, best) in greedy_actions(chooser, 3).enumerate() {
-                let target = batch.rewards[row] + batch.discounts[row] * slow[row * 3 + best];
+                let target = 0.5 * batch.rewards[row] + batch.discounts[row] * slow[row * 3 + best];
                 let error = (target - now[row * 3 + batch.actions[row] as usize]).abs();
                 expected += if error < 1.0 { 0.5 * error * error } else { error - 0.5 } / 4.0;
             }

@@ -10,7 +10,7 @@ use crate::checkpoint::{CheckpointStore, Model, Segment};
 use crate::config::RunConfig;
 use crate::error::{Error, Result};
 use crate::evaluate::{Spread, episode_seeds, play_greedily};
-use crate::learner::{Learner, LearnerSettings, greedy_actions};
+use crate::learner::{Learner, greedy_actions};
 use crate::network::Architecture;
 use crate::record::{EvaluationRecord, Event, JsonlRecorder, Progress, Recorder, TimeShares, TrainRecord, timed};
 use crate::replay::{Batch, Outcome, Reach, Replay};
@@ -121,12 +121,10 @@ impl Trainer {
             .collect::<Result<Vec<_>>>()?;
         let evaluation_tasks = (0..config.evaluation.episodes).map(|_| make()).collect::<Result<Vec<_>>>()?;
         let architecture = architecture(&evaluation_tasks[0])?;
-        let settings =
-            LearnerSettings { double: config.train.double, target_every_updates: config.train.target_every_updates };
         let frame_len = (architecture.input[0] * architecture.input[1]) as usize;
         Ok(Self {
             evaluation_seeds: episode_seeds(0, "evaluation", config.evaluation.episodes),
-            learner: Learner::new(architecture, settings, device, &mut stream(seed, "network", 0))?,
+            learner: Learner::new(architecture, config.train.learner(), device, &mut stream(seed, "network", 0))?,
             replay: Replay::new(config.train.replay_steps, lanes.len(), frame_len),
             exploration: stream(seed, "exploration", 0),
             sampling: stream(seed, "replay", 0),
