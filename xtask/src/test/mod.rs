@@ -9,6 +9,7 @@ use anyhow::Result;
 
 mod suite;
 mod tally;
+mod video;
 mod wheel;
 
 pub use suite::{Outcome, Runner, run_suite};
@@ -27,6 +28,7 @@ pub fn run(root: &Path) -> Result<ExitCode> {
         run_suite(&mut sink, "workspace", |runner| workspace(root, runner)),
         run_suite(&mut sink, "prf-cli without libtorch", |runner| without_libtorch(root, runner)),
         run_suite(&mut sink, "wheel", |runner| wheel::test(root, runner)),
+        run_suite(&mut sink, "videos by ffmpeg", |runner| video::test(root, runner)),
     ];
     let sum = report(&mut sink, &outcomes)?;
     Ok(if sum.failed == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })

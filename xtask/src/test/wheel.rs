@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::{env, fs};
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 
 use super::Runner;
 use crate::python::Python;
@@ -39,6 +39,21 @@ pub(super) fn test(root: &Path, runner: &mut Runner<'_>) -> Result<()> {
     pytest.args(["-m", "pytest", "--color=no"]).arg(package.join("tests"));
     pytest.current_dir(&package);
     runner.run(pytest)
+}
+
+/// A folder with the `ffmpeg` that the tests' requirements bring along.
+pub(super) fn ffmpeg(root: &Path) -> Result<PathBuf> {
+    let venv = target(root).join("venv");
+    let code = "import os, sys, imageio_ffmpeg\n\
+                os.makedirs(sys.argv[1], exist_ok=True)\n\
+                link = os.path.join(sys.argv[1], 'ffmpeg')\n\
+                os.path.lexists(link) and os.remove(link)\n\
+                os.symlink(imageio_ffmpeg.get_ffmpeg_exe(), link)";
+    let folder = venv.join("ffmpeg");
+    let status = Command::new(venv.join("bin/python")).args(["-c", code]).arg(&folder).status();
+    let made = status.with_context(|| format!("can't run the Python of {}", venv.display()))?.success();
+    ensure!(made, "imageio-ffmpeg, which brings ffmpeg, is not in {}: remove that folder and try again", venv.display());
+    Ok(folder)
 }
 
 /// A virtual environment that knows what it was made for.
@@ -84,7 +99,7 @@ impl Venv {
     }
 }
 
-fn with_first(folder: &Path) -> Result<OsString> {
+pub(super) fn with_first(folder: &Path) -> Result<OsString> {
     let path = env::var_os("PATH").unwrap_or_default();
     let folders = std::iter::once(folder.to_path_buf()).chain(env::split_paths(&path));
     Ok(env::join_paths(folders)?)

@@ -158,9 +158,8 @@ fn a_name_is_never_an_option_or_a_url() {
     }
 }
 
-/// By hand, with the real one on `PATH`: `cargo test -p prf-core -- --ignored`.
 #[test]
-#[ignore = "needs ffmpeg on PATH"]
+#[ignore = "needs ffmpeg on PATH; `cargo xtask test` brings one and runs this"]
 fn the_real_one_reads_what_it_has_written() {
     let dir = TempDir::new().expect("a folder for temporary files");
     let path = dir.path().join("-black and white.mkv");
