@@ -64,8 +64,8 @@ impl FrameTiles<'_> {
 fn lanes<T: Copy>(values: &[T], value: impl Fn(T) -> f32) -> Lanes {
     let mut lanes = Lanes::ZERO;
     if let Some(values) = values.first_chunk::<LANES>() {
-        for lane in 0..LANES {
-            lanes.0[lane] = value(values[lane]);
+        for (lane, &v) in lanes.0.iter_mut().zip(values) {
+            *lane = value(v);
         }
     } else {
         for (lane, &v) in lanes.0.iter_mut().zip(values) {
@@ -81,8 +81,8 @@ pub(super) fn transpose(from: &[Lanes; LANES], to: &mut [Lanes; LANES]) {
     // Four rows at a time: with more the compiler takes gathers, which take twice as long.
     for first in [0, 4, 8, 12] {
         for (column, to) in to.iter_mut().enumerate() {
-            for row in first..first + 4 {
-                to.0[row] = from[row].0[column];
+            for (to, from) in to.0[first..first + 4].iter_mut().zip(&from[first..first + 4]) {
+                *to = from.0[column];
             }
         }
     }

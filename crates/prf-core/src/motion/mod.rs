@@ -116,8 +116,7 @@ impl MotionTemplate {
     /// [`Error::InvalidParam`] when `tau` lies before the last one or below 0 or is not finite, or `delta` is
     /// not 0 or more. The template is then left as it was.
     pub fn update(&mut self, silhouette: FrameView<'_>, tau: f32, delta: f32) -> Result<(), Error> {
-        // Written so that NaN is refused too.
-        if !(delta >= 0.0) {
+        if delta.is_nan() || delta < 0.0 {
             return Err(Error::invalid("delta", &delta, "at least 0"));
         }
         let moment = Moment { now: tau, oldest: tau - delta };
