@@ -8,7 +8,8 @@ Running it again gives the same bytes. `index.json` lists the cases, with the be
 `scores.f32` holds their maps one after the other, row by row, as little-endian 32-bit floats.
 
 Templates are crops too, some of them of the very frame that they are looked for in, some made brighter and noisier. The
-frames have no flat windows, for which OpenCV has rules of its own.
+frames have no nearly flat windows: for those OpenCV has rules of its own, and already where grey varies by less than
+5 levels its 32-bit sums are off by 1e-4. Every map is checked to be within 2e-5 of the definition in 64 bits.
 """
 
 import json
@@ -45,7 +46,7 @@ def pictures():
     astronaut = np.asarray(Image.fromarray(data.astronaut()).convert("L"))
     camera, coins = data.camera(), data.coins()
     frames = {
-        "astronaut-43x41": astronaut[80:121, 200:243],
+        "camera-43x41": camera[464:505, 384:427],
         "astronaut-87x73": astronaut[60:133, 180:267],
         "camera-91x77": camera[75:152, 190:281],
         "coins-57x31": coins[40:71, 60:117],
@@ -53,7 +54,7 @@ def pictures():
     }
     templates = {
         "astronaut-31x37": altered(astronaut[70:107, 200:231]),
-        "astronaut-9x7": astronaut[90:97, 215:224],
+        "camera-9x7": camera[474:481, 399:408],
         "camera-45x33": camera[90:123, 210:255],
         "camera-elsewhere-53x41": camera[300:341, 220:273],
         "coins-39x43": altered(coins[30:73, 60:99]),
@@ -69,8 +70,8 @@ def pictures():
 def cases():
     """(frame, template, mask)"""
     yield "astronaut-87x73", "astronaut-31x37", None
-    yield "astronaut-43x41", "astronaut-9x7", None
-    yield "astronaut-43x41", "astronaut-9x7", "mask-disc-9x7"
+    yield "camera-43x41", "camera-9x7", None
+    yield "camera-43x41", "camera-9x7", "mask-disc-9x7"
     yield "camera-91x77", "camera-45x33", None
     yield "camera-91x77", "camera-45x33", "mask-disc-45x33"
     yield "camera-91x77", "camera-elsewhere-53x41", None
@@ -78,6 +79,16 @@ def cases():
     yield "coins-101x67", "coins-39x43", "mask-stripes-39x43"
     yield "coins-57x31", "coins-row-29x1", None
     yield "coins-101x67", "coins-whole-101x67", None
+
+
+def definition(frame, template, method, mask):
+    """Scores of all windows in 64 bits."""
+    counts = np.ones(template.shape, bool) if mask is None else mask != 0
+    windows = np.lib.stride_tricks.sliding_window_view(frame, template.shape)[..., counts].astype(float)
+    values = template[counts].astype(float)
+    if method == "ccoeff-normed":
+        windows, values = windows - windows.mean(-1, keepdims=True), values - values.mean()
+    return windows @ values / np.sqrt((windows**2).sum(-1) * (values**2).sum())
 
 
 def main():
@@ -89,6 +100,8 @@ def main():
     for frame, template, mask in cases():
         for name, method in METHODS.items():
             scores = cv2.matchTemplate(images[frame], images[template], method, mask=images.get(mask))
+            expected = definition(images[frame], images[template], name, images.get(mask))
+            assert np.abs(scores - expected).max() < 2e-5, (frame, template, mask, name)
             _, best, _, (x, y) = cv2.minMaxLoc(scores)
             case = {"frame": frame, "template": template, "mask": mask, "method": name}
             index.append(case | {"shape": scores.shape, "best": [x, y]})
