@@ -27,8 +27,12 @@ fn golden(name: &str) -> Vec<u8> {
     std::fs::read(path).expect("the golden data is committed")
 }
 
-/// Every case with its pictures and the history after each of its iterations.
-fn cases() -> Vec<(Case, Vec<Vec<u8>>, Vec<Vec<f32>>)> {
+/// The pictures of a case, row by row.
+type Pictures = Vec<Vec<u8>>;
+/// The histories after each of its iterations.
+type Histories = Vec<Vec<f32>>;
+
+fn cases() -> Vec<(Case, Pictures, Histories)> {
     let index: Vec<Case> = serde_json::from_slice(&golden("index.json")).expect("the index holds cases");
     let (pictures, histories) = (golden("pictures.u8"), golden("history.f32"));
     let (values, rest) = histories.as_chunks::<4>();
