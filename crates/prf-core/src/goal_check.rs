@@ -143,7 +143,7 @@ mod tests {
     use crate::{CellSize, DistanceScale, HogParams};
 
     fn texture() -> Frame {
-        let pixels = (0..40 * 30).map(|i: usize| 1 + (i * 2_654_435_761 >> 13) as u8 % 255).collect();
+        let pixels = (0..40 * 30).map(|i: usize| 1 + ((i * 2_654_435_761) >> 13) as u8 % 255).collect();
         Frame::from_vec(40, 30, pixels).expect("40 x 30")
     }
 

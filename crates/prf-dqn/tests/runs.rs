@@ -5,7 +5,7 @@ use std::cell::Cell;
 use std::fs;
 use std::path::Path;
 
-use prf_core::Frame;
+use prf_core::{Frame, Goal};
 use prf_dqn::config::RunConfig;
 use prf_dqn::record::{Event, Recorder};
 use prf_dqn::run_dir::RunDir;
@@ -54,7 +54,7 @@ fn config() -> RunConfig {
 
 fn open(config: &RunConfig, dir: &Path) -> prf_dqn::Result<Trainer> {
     set_threads(config);
-    let goal = Frame::new(84, 84);
+    let goal = Goal::from(Frame::new(84, 84));
     let run =
         if dir.join("config.toml").exists() { RunDir::at(dir) } else { RunDir::create(dir, config, Some(&goal))? };
     Trainer::open(config.clone(), Some(&goal), &run, tch::Device::Cpu)
@@ -198,7 +198,7 @@ fn a_run_folder_is_never_begun_twice() {
 #[test]
 fn the_resolved_configuration_is_complete_and_reads_back_the_same() {
     let dir = tempfile::tempdir().unwrap();
-    let goal = Frame::new(84, 84);
+    let goal = Goal::from(Frame::new(84, 84));
     let run = RunDir::create(&dir.path().join("run"), &config(), Some(&goal)).unwrap();
     let text = fs::read_to_string(run.config_path()).unwrap();
     let read: RunConfig = toml::from_str(&text).unwrap();
@@ -206,5 +206,5 @@ fn the_resolved_configuration_is_complete_and_reads_back_the_same() {
     expected.reward.goal = Some("goal.png".into());
     assert_eq!(read, expected);
     assert!(text.contains("gamma") && text.contains("orientations"), "defaults are missing:\n{text}");
-    assert_eq!(prf_core::io::read_frame(run.path().join("goal.png")).unwrap(), goal);
+    assert_eq!(prf_core::io::read_frame(run.path().join("goal.png")).unwrap(), goal.picture);
 }

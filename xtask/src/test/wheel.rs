@@ -52,7 +52,11 @@ pub(super) fn ffmpeg(root: &Path) -> Result<PathBuf> {
     let folder = venv.join("ffmpeg");
     let status = Command::new(venv.join("bin/python")).args(["-c", code]).arg(&folder).status();
     let made = status.with_context(|| format!("can't run the Python of {}", venv.display()))?.success();
-    ensure!(made, "imageio-ffmpeg, which brings ffmpeg, is not in {}: remove that folder and try again", venv.display());
+    ensure!(
+        made,
+        "imageio-ffmpeg, which brings ffmpeg, is not in {}: remove that folder and try again",
+        venv.display()
+    );
     Ok(folder)
 }
 

@@ -8,7 +8,7 @@ const METHODS: [MatchMethod; 2] = [MatchMethod::CcorrNormed, MatchMethod::Ccoeff
 /// Pictures that are hard in different ways: noise, hardly any contrast beside a lot of it, shapes, flat areas.
 fn picture(kind: usize, width: usize, height: usize) -> Frame {
     let pixel = |i: usize| {
-        let (x, y, noise) = (i % width, i / width, ((i + 1) * 2_654_435_761 >> 11) as u8);
+        let (x, y, noise) = (i % width, i / width, (((i + 1) * 2_654_435_761) >> 11) as u8);
         match kind {
             0 => noise,
             1 => 40 + (noise & 1) + if x < width / 5 { noise & 127 } else { 0 },
