@@ -50,14 +50,21 @@ pub fn report(sink: &mut impl Write, outcomes: &[Outcome]) -> Result<Tally> {
 }
 
 fn workspace(root: &Path, runner: &mut Runner<'_>) -> Result<()> {
+    let mut tests = workspace_tests(root)?;
+    tests.arg("--no-fail-fast");
+    runner.run(tests)
+}
+
+/// `cargo test --workspace`, with what it needs to link.
+fn workspace_tests(root: &Path) -> Result<Command> {
     let source = libtorch::ensure(root)?;
     let path = env::var_os("PATH").unwrap_or_default();
     let compiler = Compiler::find(&path, env::var_os("CXX").as_deref())?;
     let mut tests = cargo_at(root);
-    tests.args(["test", "--workspace", "--no-fail-fast"]);
+    tests.args(["test", "--workspace"]);
     source.configure(&mut tests);
     compiler.configure(&mut tests);
-    runner.run(tests)
+    Ok(tests)
 }
 
 fn without_libtorch(root: &Path, runner: &mut Runner<'_>) -> Result<()> {

@@ -4,13 +4,14 @@ use std::path::Path;
 
 use anyhow::{Context, Result};
 
-use super::{Runner, cargo_at, wheel};
+use super::{Runner, wheel, workspace_tests};
 
 /// Runs the tests that need `ffmpeg` on PATH. The virtual environment of the wheel's tests must be there.
 pub(super) fn test(root: &Path, runner: &mut Runner<'_>) -> Result<()> {
     let folder = wheel::ffmpeg(root)?;
-    let mut tests = cargo_at(root);
-    tests.args(["test", "--package", "prf-core", "--lib", "--", "--ignored", "io::ffmpeg"]);
+    // The whole workspace, though only prf-core has such tests: it is built already.
+    let mut tests = workspace_tests(root)?;
+    tests.args(["--lib", "--", "--ignored", "io::ffmpeg"]);
     tests.env("PATH", wheel::with_first(&folder).context("can't put ffmpeg on PATH")?);
     runner.run(tests)
 }
