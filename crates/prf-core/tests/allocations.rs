@@ -1,10 +1,12 @@
-//! Matching allocates nothing after the first frame of a size. Alone in its program, as it counts all allocations.
+//! After the first frames nothing is allocated. Alone in its program, as it counts all allocations.
 #![expect(unsafe_code, reason = "an allocator that counts is one that allocates")]
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
-use prf_core::{Frame, MatchMethod, Plane, TemplateMatcher};
+use prf_core::{
+    DescriptorParams, EmaState, Frame, MatchMethod, MotionParams, Plane, RewardParams, TemplateMatcher, WindowParams,
+};
 
 thread_local! {
     /// Of this thread alone: the test harness has others.
@@ -36,7 +38,7 @@ fn noise(width: usize, height: usize, seed: usize) -> Frame {
 }
 
 #[test]
-fn frames_after_the_first_allocate_nothing() {
+fn matching_allocates_nothing_after_the_first_frame() {
     let frames: Vec<Frame> = (0..4).map(|seed| noise(84, 70, seed)).collect();
     let mask = noise(28, 20, 3);
     for (template, mask) in [(noise(3, 5, 9), None), (noise(28, 20, 9), None), (noise(28, 20, 9), Some(&mask))] {
@@ -53,4 +55,46 @@ fn frames_after_the_first_allocate_nothing() {
             assert_eq!(ALLOCATIONS.get(), before);
         }
     }
+}
+
+#[test]
+fn rewards_and_states_allocate_nothing_once_all_sizes_were_seen() {
+    // Crops of different sizes, below and above the goal's.
+    let frames: Vec<Frame> = [4, 20, 9, 30].map(|border| framed(noise(84, 70, border), border)).into();
+    let goal = framed(noise(60, 48, 5), 12);
+    let window = WindowParams { method: MatchMethod::CcoeffNormed };
+    for params in
+        [DescriptorParams::Direct, DescriptorParams::Window(window), DescriptorParams::Motion(MotionParams::default())]
+    {
+        let mut descriptor =
+            params.describe(&goal.clone().into(), RewardParams::default()).expect("a goal of many cells");
+        let mut state = EmaState::new(84, 70, 0.7).expect("valid");
+        let mut before = 0;
+        for pass in 0..2 {
+            before = ALLOCATIONS.get();
+            descriptor.reset();
+            state.reset();
+            for frame in &frames {
+                descriptor.observe(frame.view()).expect("one size");
+                state.update(frame.view());
+            }
+            assert!(pass > 0 || ALLOCATIONS.get() > before, "nothing is counted");
+        }
+        assert_eq!(ALLOCATIONS.get(), before, "{params:?}");
+    }
+}
+
+/// The picture with a black border.
+fn framed(mut picture: Frame, border: usize) -> Frame {
+    let (width, height) = (picture.width(), picture.height());
+    for y in 0..height {
+        let row = picture.row_mut(y);
+        if y < border || y >= height - border {
+            row.fill(0);
+        } else {
+            row[..border].fill(0);
+            row[width - border..].fill(0);
+        }
+    }
+    picture
 }
