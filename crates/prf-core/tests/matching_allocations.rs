@@ -31,7 +31,7 @@ unsafe impl GlobalAlloc for Counting {
 static ALLOCATOR: Counting = Counting;
 
 fn noise(width: usize, height: usize, seed: usize) -> Frame {
-    let pixel = |i: usize| ((i + seed) * 2_654_435_761 >> 11) as u8;
+    let pixel = |i: usize| (((i + seed) * 2_654_435_761) >> 11) as u8;
     Frame::from_vec(width, height, (0..width * height).map(pixel).collect()).expect("sides above 0")
 }
 

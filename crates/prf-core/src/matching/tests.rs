@@ -8,12 +8,12 @@ const METHODS: [MatchMethod; 2] = [MatchMethod::CcorrNormed, MatchMethod::Ccoeff
 /// Pictures that are hard in different ways: noise, hardly any contrast beside a lot of it, shapes, flat areas.
 fn picture(kind: usize, width: usize, height: usize) -> Frame {
     let pixel = |i: usize| {
-        let (x, y, noise) = (i % width, i / width, ((i + 1) * 2_654_435_761 >> 11) as u8);
+        let (x, y, noise) = (i % width, i / width, (((i + 1) * 2_654_435_761) >> 11) as u8);
         match kind {
             0 => noise,
             1 => 40 + (noise & 1) + if x < width / 5 { noise & 127 } else { 0 },
             2 => (128.0 + 60.0 * (x as f32 / 5.0).sin() + 60.0 * (y as f32 / 7.0).cos()) as u8,
-            _ => [0, 255][usize::from((x / 7 + y / 5) % 4 == 0)],
+            _ => [0, 255][usize::from((x / 7 + y / 5).is_multiple_of(4))],
         }
     };
     Frame::from_vec(width, height, (0..width * height).map(pixel).collect()).expect("sides above 0")
