@@ -53,7 +53,7 @@ pub(super) fn dft4([a, b, c, d]: [Complex; 4]) -> [Complex; 4] {
 #[inline(always)]
 pub(super) fn dft5([a, b, c, d, e]: [Complex; 5]) -> [Complex; 5] {
     const COS: [f32; 2] = [0.309_017, -0.809_017];
-    const SIN: [f32; 2] = [0.951_056_5, 0.587_785_25];
+    const SIN: [f32; 2] = [0.951_056_54, 0.587_785_24];
     let (outer, inner) = (dft2([b, e]), dft2([c, d]));
     let middle = |near, far| plus(a, plus(scaled(outer[0], near), scaled(inner[0], far)));
     let (first, second) = (middle(COS[0], COS[1]), middle(COS[1], COS[0]));

@@ -4,6 +4,17 @@ use super::rectangles::Patch;
 use super::simd::Kernel;
 use crate::FrameView;
 
+/// Each byte, and its square in the upper half.
+static BOTH: [u64; 256] = {
+    let mut both = [0; 256];
+    let mut v = 0u64;
+    while v < 256 {
+        both[v as usize] = v | ((v * v) << 32);
+        v += 1;
+    }
+    both
+};
+
 /// For every corner, the sums over all that is above it and to the left, kept modulo 2³². Sums over rectangles are
 /// differences of four of them, and exact as long as they themselves fit, which [`Patch`] takes care of.
 #[derive(Clone, Debug)]
@@ -14,16 +25,13 @@ pub(super) struct Integral {
     squares: Vec<u32>,
     /// Working memory: a row's own sums.
     starts: Vec<u64>,
-    /// Each byte, and its square in the upper half.
-    both: [u64; 256],
 }
 
 impl Integral {
     /// For frames of this size.
     pub(super) fn new([height, width]: [usize; 2]) -> Integral {
         let corners = vec![0; (height + 1) * (width + 1)];
-        let both = std::array::from_fn(|v| (v as u64) | (v as u64 * v as u64) << 32);
-        Integral { stride: width + 1, sums: corners.clone(), squares: corners, starts: vec![0; width], both }
+        Integral { stride: width + 1, sums: corners.clone(), squares: corners, starts: vec![0; width] }
     }
 
     /// Takes in a frame of the size it was made for and returns its mean.
@@ -45,7 +53,7 @@ impl Integral {
         let mut both = 0u64;
         for (start, &v) in self.starts.iter_mut().zip(row) {
             // Each sum waits for the one before, so two in one take half the time.
-            both = both.wrapping_add(self.both[usize::from(v)]);
+            both = both.wrapping_add(BOTH[usize::from(v)]);
             *start = both;
         }
         both & u64::from(u32::MAX)

@@ -1,15 +1,15 @@
 //! Which way a correlation goes, by a rough count of what each costs.
 //!
-//! The unit is one product of the direct way, about 25 ps with AVX-512. Measured on one core of an Intel Xeon; with
+//! The unit is one product of the direct way, about 32 ps with AVX-512. Measured on one core of an Intel Xeon; with
 //! other vector widths both ways change alike.
 
 use super::direct;
 use super::fft::{LANES, radices};
 
 /// One pass of a transform and its inverse, for one complex number.
-const PASS: usize = 10;
+const PASS: usize = 8;
 /// All else that happens to a complex number: loading, transposing, multiplying, storing.
-const MOVE: usize = 40;
+const MOVE: usize = 20;
 
 /// The most that a tile's side exceeds the template's, in pixels. Beyond, longer tiles gain nothing.
 const MAX_STEP: usize = 2048;

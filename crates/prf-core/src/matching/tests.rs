@@ -13,7 +13,7 @@ fn picture(kind: usize, width: usize, height: usize) -> Frame {
             0 => noise,
             1 => 40 + (noise & 1) + if x < width / 5 { noise & 127 } else { 0 },
             2 => (128.0 + 60.0 * (x as f32 / 5.0).sin() + 60.0 * (y as f32 / 7.0).cos()) as u8,
-            _ => [0, 255][usize::from((x / 7 + y / 5) % 4 == 0)],
+            _ => [0, 255][usize::from((x / 7 + y / 5).is_multiple_of(4))],
         }
     };
     Frame::from_vec(width, height, (0..width * height).map(pixel).collect()).expect("sides above 0")

@@ -63,7 +63,7 @@ impl FrameTiles<'_> {
 #[inline(always)]
 fn lanes<T: Copy>(values: &[T], value: impl Fn(T) -> f32) -> Lanes {
     let mut lanes = Lanes::ZERO;
-    // With their number known to the compiler, sixteen values are one load.
+    // Of known length, the loop is unrolled.
     if let Some(values) = values.first_chunk::<LANES>() {
         for (lane, &v) in lanes.0.iter_mut().zip(values) {
             *lane = value(v);
@@ -80,10 +80,10 @@ fn lanes<T: Copy>(values: &[T], value: impl Fn(T) -> f32) -> Lanes {
 #[inline(always)]
 pub(super) fn transpose(from: &[Lanes; LANES], to: &mut [Lanes; LANES]) {
     // Four rows at a time: with more the compiler takes gathers, which take twice as long.
-    for first in [0, 4, 8, 12] {
+    for (block, rows) in from.as_chunks::<4>().0.iter().enumerate() {
         for (column, to) in to.iter_mut().enumerate() {
-            for (to, from) in to.0[first..first + 4].iter_mut().zip(&from[first..first + 4]) {
-                *to = from.0[column];
+            for (row, from) in rows.iter().enumerate() {
+                to.0[4 * block + row] = from.0[column];
             }
         }
     }
