@@ -38,8 +38,10 @@ def main() -> None:
             axes.plot(steps, scores, color=colour, linewidth=1.3, alpha=0.85, label=label if index == 0 else None)
     for score, label in [(oracle, "oracle"), (0.9 * oracle, "90 % of the oracle"), (random, "random player")]:
         axes.axhline(score, color="#555555", linewidth=0.9, linestyle=":" if "%" in label else "--")
-        axes.annotate(label, (0.0, score), xycoords=("axes fraction", "data"), fontsize=8, color="#555555",
-                      ha="left", va="bottom", xytext=(4, 1), textcoords="offset points")
+        # The curves begin at the random player's score, so its name stands at the other end.
+        end, side = (1.0, "right") if score == random else (0.0, "left")
+        axes.annotate(label, (end, score), xycoords=("axes fraction", "data"), fontsize=8, color="#555555",
+                      ha=side, va="bottom", xytext=(4 if side == "left" else -4, 1), textcoords="offset points")
     axes.set_xlabel("steps, in thousands (one line a seed)")
     axes.set_ylabel("mean score of the greedy agent")
     axes.set_ylim(0, 1.1 * oracle)
