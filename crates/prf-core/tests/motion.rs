@@ -219,12 +219,16 @@ fn what_no_template_can_have_come_to_is_not_restored() {
         MotionState { history: vec![0.11; 6], ..good.clone() },
         MotionState { tau: f32::NAN, ..good.clone() },
         MotionState { tau: f32::INFINITY, ..good.clone() },
-        MotionState { tau: -1.0, ..MotionState::default() },
+        MotionState { tau: -1.0, ..good.clone() },
+        MotionState { tau: 1.0, ..MotionState::default() },
     ];
     for state in bad {
         assert!(matches!(template.restore(&state), Err(Error::Restore { .. })), "{state:?}");
         assert_eq!(template.state(), &good);
     }
+    template.restore(&MotionState { iterations: u64::MAX, ..good }).unwrap();
+    template.observe(frames[0].view()).unwrap();
+    assert_eq!(template.iterations(), u64::MAX);
     template.restore(&MotionState::default()).unwrap();
     template.observe(Frame::new(9, 9).view()).unwrap();
 }

@@ -27,34 +27,36 @@ fn golden(name: &str) -> Vec<u8> {
     std::fs::read(path).expect("the golden data is committed")
 }
 
-/// The pictures of a case, row by row.
-type Pictures = Vec<Vec<u8>>;
-/// The histories after each of its iterations.
-type Histories = Vec<Vec<f32>>;
+/// A case with its pictures and the history after each of its iterations.
+struct Sequence {
+    case: Case,
+    pictures: Vec<Vec<u8>>,
+    histories: Vec<Vec<f32>>,
+}
 
-fn cases() -> Vec<(Case, Pictures, Histories)> {
+fn sequences() -> Vec<Sequence> {
     let index: Vec<Case> = serde_json::from_slice(&golden("index.json")).expect("the index holds cases");
     let (pictures, histories) = (golden("pictures.u8"), golden("history.f32"));
     let (values, rest) = histories.as_chunks::<4>();
     assert!(rest.is_empty());
     let mut pixels = pictures.into_iter();
     let mut values = values.iter().map(|&bytes| f32::from_le_bytes(bytes));
-    let cases = index.into_iter().map(|case| {
+    let sequences = index.into_iter().map(|case| {
         let len = case.width * case.height;
         let iterations = case.pictures - usize::from(matches!(case.input, Input::Observe(_)));
         let pictures = (0..case.pictures).map(|_| pixels.by_ref().take(len).collect()).collect();
         let histories = (0..iterations).map(|_| values.by_ref().take(len).collect()).collect();
-        (case, pictures, histories)
+        Sequence { case, pictures, histories }
     });
-    let cases = cases.collect();
+    let sequences = sequences.collect();
     assert_eq!((pixels.len(), values.len()), (0, 0), "the index covers all data");
-    cases
+    sequences
 }
 
 #[test]
 fn every_iteration_has_the_history_of_opencv_to_the_bit() {
     let (mut observed, mut updated) = (0, 0);
-    for (case, pictures, histories) in cases() {
+    for Sequence { case, pictures, histories } in sequences() {
         let mut views = pictures.iter().map(|p| FrameView::new(case.width, case.height, p).expect("a whole picture"));
         let mut template = MotionTemplate::new(MotionParams::default()).expect("valid parameters");
         if let Input::Observe(params) = &case.input {

@@ -5,6 +5,9 @@
 
 use multiversion::multiversion;
 
+/// Pixels that are worked on at a time.
+const BLOCK: usize = 32;
+
 /// The times of one iteration.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Moment {
@@ -27,9 +30,26 @@ impl Moment {
 /// and `frame`, which becomes the next reference. All have the same length.
 #[multiversion(targets("x86_64+avx512f+avx512bw+avx512vl", "x86_64+avx2"))]
 pub(super) fn observe(frame: &[u8], threshold: u8, reference: &mut [u8], history: &mut [f32], moment: Moment) {
-    for ((mu, before), &now) in history.iter_mut().zip(reference).zip(frame) {
-        *mu = moment.next(now.abs_diff(*before) > threshold, *mu);
-        *before = now;
+    let (frames, frame) = frame.as_chunks::<BLOCK>();
+    let (references, reference) = reference.as_chunks_mut::<BLOCK>();
+    let (histories, history) = history.as_chunks_mut::<BLOCK>();
+    for ((frame, reference), history) in frames.iter().zip(references).zip(histories) {
+        observe_block(frame, threshold, reference, history, moment);
+    }
+    observe_block(frame, threshold, reference, history, moment);
+}
+
+/// Up to a block of pixels. Bytes are compared before floats are touched: in one loop, there would be as few
+/// bytes at a time as there are floats.
+#[inline(always)]
+fn observe_block(frame: &[u8], threshold: u8, reference: &mut [u8], history: &mut [f32], moment: Moment) {
+    let mut silhouette = [false; BLOCK];
+    for ((moved, &now), &before) in silhouette.iter_mut().zip(frame).zip(&*reference) {
+        *moved = now.abs_diff(before) > threshold;
+    }
+    reference.copy_from_slice(frame);
+    for (mu, &moved) in history.iter_mut().zip(&silhouette) {
+        *mu = moment.next(moved, *mu);
     }
 }
 

@@ -131,9 +131,9 @@ impl MotionTemplate {
     /// `out` takes the size of the frames, in new memory only if it had another. Before the first
     /// frame there is no size: `out` keeps its own and becomes black.
     ///
-    /// Between `n` equal steps of `τ` a movement darkens by about `255/n`: early in a sequence much, after
-    /// 510 iterations too little for a byte to show. A constant `δ` far below `τ` leaves all that is remembered
-    /// nearly white.
+    /// As `τ` grows, older movements darken: those of one iteration and of the next are about `255/t` apart at
+    /// iteration `t`, from 510 on less than half a byte. A constant `δ` far below `τ` leaves all that is
+    /// remembered nearly white.
     pub fn history_into(&self, out: &mut Frame) {
         self.prepare(out);
         kernel::history_bytes(&self.state.history, self.tau(), out.as_mut_slice());
@@ -159,7 +159,7 @@ impl MotionTemplate {
         self.state.shape
     }
 
-    /// How many silhouettes have been taken in: one fewer than the frames observed.
+    /// How many silhouettes have been taken in; of frames that were observed, one fewer than there were.
     #[must_use]
     pub fn iterations(&self) -> u64 {
         self.state.iterations
@@ -210,7 +210,7 @@ impl MotionTemplate {
             return Err(Error::invalid("tau", &now, expected));
         }
         self.fit(frame)?;
-        self.state.iterations += 1;
+        self.state.iterations = self.state.iterations.saturating_add(1);
         self.state.tau = now;
         Ok(())
     }

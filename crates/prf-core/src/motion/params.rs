@@ -38,8 +38,9 @@ pub struct MotionParams {
 }
 
 impl Default for MotionParams {
-    /// The paper's schedule for the robot's goal: `τ_t = 0.1 + 0.4 t` and `δ_t = (t + 1)/3` (for the
-    /// human's it is 0.3 and 4). The paper leaves the threshold open; 30 of 255 is above a camera's noise.
+    /// The paper's schedule for the robot's goal, `τ_t = 0.1 + 0.4 t` and `δ_t = (t + 1)/3`; for the human's it is
+    /// 0.3 and 4. With both, a movement of iteration `k` is remembered up to iteration `6 k + 5`. The paper leaves the
+    /// threshold open; 30 of 255 is a common choice against a camera's noise.
     fn default() -> MotionParams {
         MotionParams { threshold: 30, tau_start: 0.1, tau_step: 0.4, delta: DeltaSchedule::Divisor(3.0) }
     }

@@ -30,9 +30,9 @@ impl MotionState {
     /// Checks that a motion template can have come to this state.
     pub(super) fn validate(&self) -> Result<(), Error> {
         self.validate_lengths()?;
-        let tau = self.tau;
-        if !(tau >= 0.0 && tau.is_finite()) {
-            return Err(refused(format!("the time {tau}"), "0 or more"));
+        let (tau, latest) = (self.tau, if self.iterations == 0 { 0.0 } else { f32::MAX });
+        if !(0.0..=latest).contains(&tau) {
+            return Err(refused(format!("the time {tau}"), format!("0 to {latest:e}")));
         }
         match self.history.iter().find(|mu| !(0.0..=tau).contains(*mu)) {
             Some(mu) => Err(refused(format!("a movement at {mu}"), format!("0 to {tau}, the last time"))),
