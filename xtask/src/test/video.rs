@@ -6,12 +6,12 @@ use anyhow::{Context, Result};
 
 use super::{Runner, wheel, workspace_tests};
 
-/// Runs the tests that need `ffmpeg` on PATH. The virtual environment of the wheel's tests must be there.
+/// Runs the test that needs `ffmpeg` on PATH. The virtual environment of the wheel's tests must be there.
 pub(super) fn test(root: &Path, runner: &mut Runner<'_>) -> Result<()> {
     let folder = wheel::ffmpeg(root)?;
-    // The whole workspace, though only prf-core has such tests: it is built already.
+    // With the whole workspace, though it is prf-core's: so what is built already serves.
     let mut tests = workspace_tests(root)?;
-    tests.args(["--lib", "--", "--ignored", "io::ffmpeg"]);
+    tests.args(["--test", "real_ffmpeg"]);
     tests.env("PATH", wheel::with_first(&folder).context("can't put ffmpeg on PATH")?);
     runner.run(tests)
 }

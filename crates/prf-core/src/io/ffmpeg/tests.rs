@@ -157,29 +157,3 @@ fn a_name_is_never_an_option_or_a_url() {
         assert!(!words.contains(&OsString::from(name)));
     }
 }
-
-#[test]
-#[ignore = "needs ffmpeg on PATH; `cargo xtask test` brings one and runs this"]
-fn the_real_one_reads_what_it_has_written() {
-    let dir = TempDir::new().expect("a folder for temporary files");
-    let path = dir.path().join("-black and white.mkv");
-    let made = Command::new(PROGRAM)
-        .args(
-            "-v error -f lavfi -i color=black:s=32x16:r=5:d=1[a];color=white:s=32x16:r=5:d=1[b];[a][b]concat"
-                .split(' '),
-        )
-        .args(["-pix_fmt", "yuv420p"])
-        .arg(&path)
-        .status();
-    assert!(made.is_ok_and(|status| status.success()));
-    let mut video = open_at(PROGRAM.as_ref(), &path).expect("a video");
-    let mut frame = Frame::new(1, 1);
-    let mut seen = Vec::new();
-    while let Some(timed) = video.next_into(&mut frame).expect("a whole video") {
-        assert_eq!((frame.width(), frame.height()), (32, 16));
-        assert!(frame.as_slice().iter().all(|v| v.abs_diff(frame.as_slice()[0]) <= 1));
-        seen.push((frame.as_slice()[0], timed.time_s.map(|time_s| (time_s * 10.0).round() as u32)));
-    }
-    let expected: Vec<_> = (0..10).map(|i| (if i < 5 { 0 } else { 255 }, Some(2 * i))).collect();
-    assert_eq!(seen, expected);
-}
