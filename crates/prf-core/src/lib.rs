@@ -60,6 +60,7 @@ mod rank;
 mod region;
 mod resize;
 mod reward;
+mod simd;
 
 pub use crop::{Rect, crop_box};
 pub use descriptor::{

@@ -1,8 +1,8 @@
 //! Correlation as it is defined, for small templates.
 
-use super::simd::Kernel;
 use super::template::Template;
 use crate::FrameView;
+use crate::simd::Kernel;
 
 /// Templates of up to so many pixels: their sums of products, at most 255² each, stay below 2²⁴, where an `f32` holds
 /// whole numbers exactly.

@@ -1,8 +1,8 @@
 //! Sums of pixels and of their squares over windows.
 
 use super::rectangles::Patch;
-use super::simd::Kernel;
 use crate::FrameView;
+use crate::simd::Kernel;
 
 /// Each byte, and its square in the upper half.
 static BOTH: [u64; 256] = {

@@ -11,7 +11,6 @@ mod normalize;
 mod plan;
 mod rectangles;
 mod search;
-mod simd;
 mod spectral;
 mod template;
 mod tiles;
@@ -19,6 +18,7 @@ mod tiles;
 use serde::{Deserialize, Serialize};
 
 use crate::frame::check_shape;
+use crate::simd::Simd;
 use crate::{Error, Frame, FrameView, Plane, Rect};
 
 use direct::Direct;
@@ -26,7 +26,6 @@ use integral::{Integral, Integrate};
 use normalize::{Normalize, WindowRow};
 use plan::Plan;
 use search::Search;
-use simd::Simd;
 use spectral::Spectral;
 use template::Template;
 

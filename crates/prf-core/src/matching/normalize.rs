@@ -1,9 +1,9 @@
 //! From correlations to scores.
 
 use super::integral::Integral;
-use super::simd::Kernel;
 use super::template::{Template, Terms};
 use crate::FrameView;
+use crate::simd::Kernel;
 
 /// How far a score of the map may be from the exact one. Where more than that is possible, because the window is
 /// nearly flat, the score is computed from whole numbers instead.

@@ -3,8 +3,8 @@
 use super::Match;
 use super::integral::Integral;
 use super::normalize::TOLERANCE;
-use super::simd::Kernel;
 use super::template::Template;
+use crate::simd::Kernel;
 use crate::{FrameView, Rect};
 
 /// Finds the best window: exact scores of all that may be it by the map.

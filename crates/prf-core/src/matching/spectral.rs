@@ -6,10 +6,10 @@
 
 use super::fft::{Fft, LANES, Lanes};
 use super::plan::Tiling;
-use super::simd::{Kernel, Simd};
 use super::template::Template;
 use super::tiles::{FrameTiles, Map, Source, TemplateTile, transpose};
 use crate::FrameView;
+use crate::simd::{Kernel, Simd};
 
 /// How far a correlation may be from the exact one, in units of `‖I − c‖ ‖T − t₀‖` with the norms of a pair of tiles
 /// and of the template. Ten times what was ever seen, see the test.

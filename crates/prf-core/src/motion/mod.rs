@@ -7,8 +7,9 @@ mod state;
 pub use params::{DeltaSchedule, MotionParams};
 pub use state::MotionState;
 
-use kernel::Moment;
+use kernel::{EnergyBytes, HistoryBytes, Moment, Observe, Update};
 
+use crate::simd::Simd;
 use crate::{Error, Frame, FrameView};
 
 /// Motion template `Ψ`: one picture of where and when something moved in a sequence of frames.
@@ -40,6 +41,7 @@ use crate::{Error, Frame, FrameView};
 /// ```
 #[derive(Clone, Debug)]
 pub struct MotionTemplate {
+    simd: Simd,
     params: MotionParams,
     state: MotionState,
 }
@@ -52,7 +54,7 @@ impl MotionTemplate {
     /// [`Error::InvalidParam`] as [`MotionParams::validate`].
     pub fn new(params: MotionParams) -> Result<MotionTemplate, Error> {
         params.validate()?;
-        Ok(MotionTemplate { params, state: MotionState::default() })
+        Ok(MotionTemplate { simd: Simd::detect(), params, state: MotionState::default() })
     }
 
     /// `Ψ(I)`, the template of all these frames.
@@ -99,7 +101,8 @@ impl MotionTemplate {
         let moment = self.scheduled();
         self.advance(frame, moment)?;
         let MotionState { reference, history, .. } = &mut self.state;
-        kernel::observe(frame.as_slice(), self.params.threshold, reference, history, moment);
+        let (frame, threshold) = (frame.as_slice(), self.params.threshold);
+        self.simd.run(Observe { frame, threshold, reference, history, moment });
         Ok(())
     }
 
@@ -121,7 +124,7 @@ impl MotionTemplate {
         }
         let moment = Moment { now: tau, oldest: tau - delta };
         self.advance(silhouette, moment)?;
-        kernel::update(silhouette.as_slice(), &mut self.state.history, moment);
+        self.simd.run(Update { silhouette: silhouette.as_slice(), history: &mut self.state.history, moment });
         Ok(())
     }
 
@@ -136,14 +139,14 @@ impl MotionTemplate {
     /// remembered nearly white.
     pub fn history_into(&self, out: &mut Frame) {
         self.prepare(out);
-        kernel::history_bytes(&self.state.history, self.tau(), out.as_mut_slice());
+        self.simd.run(HistoryBytes { history: &self.state.history, tau: self.tau(), bytes: out.as_mut_slice() });
     }
 
     /// The motion energy image: 255 where a movement is remembered, 0 elsewhere. `out` is treated as by
     /// [`history_into`](MotionTemplate::history_into).
     pub fn energy_into(&self, out: &mut Frame) {
         self.prepare(out);
-        kernel::energy_bytes(&self.state.history, out.as_mut_slice());
+        self.simd.run(EnergyBytes { history: &self.state.history, bytes: out.as_mut_slice() });
     }
 
     /// `μ`, of [`shape`](MotionTemplate::shape): 0 where no movement is remembered, else the `τ` of the
@@ -174,7 +177,7 @@ impl MotionTemplate {
     /// Whether a movement is remembered anywhere.
     #[must_use]
     pub fn has_motion(&self) -> bool {
-        kernel::has_motion(&self.state.history)
+        self.state.history.iter().any(|&mu| mu > 0.0)
     }
 
     /// All that is remembered, for a checkpoint.

@@ -11,7 +11,7 @@
 /// Work that is compiled once for every instruction set. `run`, and all that it calls in its hot loops, must be
 /// `#[inline(always)]`: only what is inlined gets the instructions. A closure handed to an iterator often isn't, so
 /// such loops are `for` loops.
-pub(super) trait Kernel {
+pub(crate) trait Kernel {
     type Output;
 
     fn run(self) -> Self::Output;
@@ -19,7 +19,7 @@ pub(super) trait Kernel {
 
 /// Instructions that this machine has; there is no other way to get one than to ask the machine.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Simd(Level);
+pub(crate) struct Simd(Level);
 
 #[derive(Clone, Copy, Debug)]
 enum Level {
@@ -58,16 +58,16 @@ impl Level {
 
 impl Simd {
     /// All that this machine has, the fastest first.
-    pub(super) fn available() -> impl Iterator<Item = Simd> {
+    pub(crate) fn available() -> impl Iterator<Item = Simd> {
         LEVELS.iter().copied().filter(|level| level.is_available()).map(Simd)
     }
 
     /// The fastest.
-    pub(super) fn detect() -> Simd {
+    pub(crate) fn detect() -> Simd {
         Simd::available().next().unwrap_or(Simd(Level::Baseline))
     }
 
-    pub(super) fn run<K: Kernel>(self, kernel: K) -> K::Output {
+    pub(crate) fn run<K: Kernel>(self, kernel: K) -> K::Output {
         match self.0 {
             Level::Baseline => kernel.run(),
             // SAFETY: a level is made only after the machine was asked for its instructions.
