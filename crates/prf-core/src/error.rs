@@ -83,6 +83,22 @@ pub enum Error {
         frame: [usize; 2],
     },
 
+    /// A goal shows nothing that could be moved or taken away, so it can't be judged by itself.
+    #[error(
+        "the goal is one even grey, expected one that shows something on an even background; judge the reward by frames \
+         with scores or by a demonstration instead"
+    )]
+    NothingToAlter,
+
+    /// What is known of the frames tells no two of them apart.
+    #[error("{got}, expected {expected}; without that no reward can be judged")]
+    NoEvidence {
+        /// What is known.
+        got: String,
+        /// What is needed.
+        expected: &'static str,
+    },
+
     /// A saved state doesn't belong to the object that should take it.
     #[error("the saved state holds {got}, expected {expected}")]
     Restore {

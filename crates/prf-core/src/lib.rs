@@ -34,7 +34,7 @@
 //! | where and when something moved | [`MotionTemplate`], [`MotionParams`], [`DeltaSchedule`] |
 //! | where a picture lies in a larger one | [`TemplateMatcher`], [`MatchMethod`], [`Match`] |
 //! | what the network sees | [`EmaState`] |
-//! | does a reward order states rightly | [`spearman`] |
+//! | does a reward order states rightly | [`Footage`], [`Evidence`], [`Judgement`], [`spearman`], [`auc`] |
 //! | pictures in files (feature `io`) | `io::read_frame`, `io::write_frame` |
 //! | animations, videos, folders (feature `io`) | `io::FrameSource` |
 //!
@@ -44,6 +44,7 @@ mod crop;
 mod descriptor;
 mod ema;
 mod error;
+mod evidence;
 #[cfg(feature = "explain")]
 mod explain;
 mod frame;
@@ -69,6 +70,7 @@ pub use descriptor::{
 };
 pub use ema::EmaState;
 pub use error::{Error, PictureProblem};
+pub use evidence::{Evidence, Figure, FigureKind, Footage, Judgement, Label, Rewards, Verdict, recommend, settings};
 #[cfg(feature = "explain")]
 pub use explain::{Picture, draw_explanation};
 pub use frame::{Frame, FrameView};
@@ -77,6 +79,6 @@ pub use hog::{CellSize, Hog, HogLayout, HogParams, Norm};
 pub use matching::{Match, MatchMethod, TemplateMatcher};
 pub use motion::{DeltaSchedule, MotionParams, MotionState, MotionTemplate};
 pub use plane::{Plane, PlaneView};
-pub use rank::spearman;
+pub use rank::{auc, spearman};
 pub use resize::Resizer;
 pub use reward::{DistanceScale, RewardParams, Score};

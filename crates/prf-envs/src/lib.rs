@@ -22,6 +22,7 @@ pub mod players;
 pub mod raster;
 pub mod registry;
 pub mod rng;
+pub mod survey;
 mod task;
 
 pub use env::{Environment, Spec, Status, Step};

@@ -11,7 +11,7 @@ const KEPT_SIZES: usize = 8;
 
 /// A goal's template `T_G`, prepared to be compared with any number of agent templates `T_A`.
 #[derive(Clone, Debug)]
-pub(super) struct Comparison {
+pub(crate) struct Comparison {
     params: RewardParams,
     goal: Frame,
     goal_box: Rect,
@@ -35,8 +35,8 @@ struct Kept {
 }
 
 impl Comparison {
-    /// As [`DirectDescriptor::new`](super::DirectDescriptor::new), which has the errors.
-    pub(super) fn new(goal: &Frame, params: RewardParams) -> Result<Comparison, Error> {
+    /// As [`DirectDescriptor::new`](crate::DirectDescriptor::new), which has the errors.
+    pub(crate) fn new(goal: &Frame, params: RewardParams) -> Result<Comparison, Error> {
         params.validate()?;
         let goal_box = crop_box(goal.view());
         let layout = HogLayout::new(&params.hog, goal_box.width, goal_box.height)?;
@@ -72,7 +72,7 @@ impl Comparison {
     }
 
     /// Crops `T_A`, brings both to one size and compares their HOGs.
-    pub(super) fn score(&mut self, agent: Region<'_, u8>) -> Score {
+    pub(crate) fn score(&mut self, agent: Region<'_, u8>) -> Score {
         self.agent_box = crop_box_of(agent);
         let agent = agent.within(self.agent_box);
         let goal_shape = [self.goal_box.height, self.goal_box.width];

@@ -11,6 +11,8 @@ pub use direct::DirectDescriptor;
 pub use explanation::Explanation;
 pub use motion::MotionDescriptor;
 pub use params::{DescriptorKind, DescriptorParams, Goal};
+pub(crate) use comparison::Comparison;
+pub(crate) use window::WindowFinder;
 pub use window::{WindowDescriptor, WindowParams};
 
 use crate::{Error, FrameView, Score};

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::comparison::Comparison;
 use super::{Explanation, TaskDescriptor};
+use crate::region::Region;
 use crate::{Error, Frame, FrameView, Match, MatchMethod, RewardParams, Score, TemplateMatcher};
 
 /// Parameters of a window task descriptor. In a file, every key may be left out.
@@ -37,8 +38,14 @@ pub struct WindowParams {
 /// ```
 #[derive(Clone, Debug)]
 pub struct WindowDescriptor {
-    matcher: TemplateMatcher,
+    finder: WindowFinder,
     comparison: Comparison,
+}
+
+/// Finds the agent's template `T_A`: the window that matches the goal best.
+#[derive(Clone, Debug)]
+pub(crate) struct WindowFinder {
+    matcher: TemplateMatcher,
     cut_out: Option<CutOut>,
     matched: Option<Match>,
 }
@@ -48,6 +55,34 @@ pub struct WindowDescriptor {
 struct CutOut {
     mask: Frame,
     template: Frame,
+}
+
+impl WindowFinder {
+    /// # Errors
+    ///
+    /// As [`TemplateMatcher::new`].
+    pub(crate) fn new(goal: &Frame, mask: Option<&Frame>, window: WindowParams) -> Result<WindowFinder, Error> {
+        let matcher = TemplateMatcher::new(goal, mask, window.method)?;
+        let cut_out = mask.map(|mask| CutOut { mask: mask.clone(), template: goal.clone() });
+        Ok(WindowFinder { matcher, cut_out, matched: None })
+    }
+
+    /// # Errors
+    ///
+    /// As [`TemplateMatcher::prepare`].
+    pub(crate) fn find<'a>(&'a mut self, mirror: FrameView<'a>) -> Result<Region<'a, u8>, Error> {
+        let matched = self.matcher.best(mirror)?;
+        self.matched = Some(matched);
+        let window = mirror.region().within(matched.rect);
+        let Some(CutOut { mask, template }) = &mut self.cut_out else {
+            return Ok(window);
+        };
+        for y in 0..mask.height() {
+            template.row_mut(y).copy_from_slice(window.row(y));
+        }
+        template.blacken_outside(mask.view());
+        Ok(template.view().region())
+    }
 }
 
 impl WindowDescriptor {
@@ -62,39 +97,28 @@ impl WindowDescriptor {
         window: WindowParams,
         params: RewardParams,
     ) -> Result<WindowDescriptor, Error> {
-        let matcher = TemplateMatcher::new(goal, mask, window.method)?;
+        let finder = WindowFinder::new(goal, mask, window)?;
         let mut template = goal.clone();
-        let cut_out = mask.map(|mask| {
+        if let Some(mask) = mask {
             template.blacken_outside(mask.view());
-            CutOut { mask: mask.clone(), template: template.clone() }
-        });
-        Ok(WindowDescriptor { matcher, comparison: Comparison::new(&template, params)?, cut_out, matched: None })
+        }
+        Ok(WindowDescriptor { finder, comparison: Comparison::new(&template, params)? })
     }
 }
 
 impl TaskDescriptor for WindowDescriptor {
     fn prepare(&mut self, shape: [usize; 2]) -> Result<(), Error> {
-        self.matcher.prepare(shape)
+        self.finder.matcher.prepare(shape)
     }
 
     fn reset(&mut self) {}
 
     fn observe(&mut self, mirror: FrameView<'_>) -> Result<Score, Error> {
-        let matched = self.matcher.best(mirror)?;
-        self.matched = Some(matched);
-        let window = mirror.region().within(matched.rect);
-        let Some(CutOut { mask, template }) = &mut self.cut_out else {
-            return Ok(self.comparison.score(window));
-        };
-        for y in 0..mask.height() {
-            template.row_mut(y).copy_from_slice(window.row(y));
-        }
-        template.blacken_outside(mask.view());
-        Ok(self.comparison.score(template.view().region()))
+        Ok(self.comparison.score(self.finder.find(mirror)?))
     }
 
     fn explain<'a>(&'a self, mirror: FrameView<'a>) -> Explanation<'a> {
-        self.comparison.explain(mirror, self.matched)
+        self.comparison.explain(mirror, self.finder.matched)
     }
 }
 

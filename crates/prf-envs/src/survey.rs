@@ -1,0 +1,145 @@
+//! What a world looks like to players of every skill: frames to judge a reward by.
+
+use prf_core::{Error as CoreError, Footage, Frame, Label};
+
+use crate::players::{Oracle, Player, Random};
+use crate::rng::{ChaCha8Rng, below, stream, unit_f32};
+use crate::{EnvConfig, Environment, Error, registry};
+
+/// How often the clumsy player does something at random.
+const CLUMSY: f32 = 0.2;
+/// Episodes of the random and of the clumsy player.
+const EPISODES: usize = 40;
+/// Episodes of the oracle, and the steps after which they are cut off: enough to see a finished task.
+const LONG_EPISODES: usize = 4;
+const LONG: u32 = 20_000;
+
+/// Takes about `frames` frames of the world that `config` describes, a third each of a random player, of a clumsy one (the oracle with
+/// every fifth action at random) and of the oracle, which plays beyond the config's limit until the task is finished. Each
+/// is labelled with the score.
+///
+/// The same seed gives the same frames.
+///
+/// # Errors
+/// An unknown world; as [`Footage::observe`].
+pub fn survey(config: &EnvConfig, seed: u64, frames: usize, footage: &mut Footage) -> Result<(), Error> {
+    let long = EnvConfig { limit_steps: config.limit_steps.max(LONG), ..config.clone() };
+    let share = frames.div_ceil(3);
+    take(config, &mut Random::new(), EPISODES, (seed, share), footage)?;
+    take(config, &mut Clumsy::new(), EPISODES, (seed, share), footage)?;
+    take(&long, &mut Oracle, LONG_EPISODES, (seed, share), footage)
+}
+
+/// `share` frames, evenly spread over the episodes of a player.
+fn take(
+    config: &EnvConfig,
+    player: &mut dyn Player,
+    episodes: usize,
+    (seed, share): (u64, usize),
+    footage: &mut Footage,
+) -> Result<(), Error> {
+    let mut world = registry::make(config)?;
+    let seeds = || (0..episodes as u64).map(|index| episode_seed(seed, index));
+    let mut steps = 0;
+    for seed in seeds() {
+        play(world.as_mut(), player, seed, |_, _| {
+            steps += 1;
+            Ok(())
+        })?;
+    }
+    let stride = (steps / share.max(1)).max(1);
+    let mut frame = Frame::new(world.spec().width, world.spec().height);
+    let mut index = 0;
+    for seed in seeds() {
+        footage.begin();
+        play(world.as_mut(), player, seed, |world, score| {
+            world.draw_into(&mut frame);
+            let label = Label { score: Some(f64::from(score)), success: None };
+            let is_taken = index % stride == 0;
+            index += 1;
+            if is_taken { footage.observe(frame.view(), label) } else { footage.pass(frame.view()) }
+        })?;
+    }
+    Ok(())
+}
+
+fn episode_seed(seed: u64, index: u64) -> u64 {
+    let mut rng = stream(seed, "survey", index);
+    below(&mut rng, 1 << 53) as u64
+}
+
+/// Plays an episode and shows the world after each step, with the score.
+fn play(
+    world: &mut dyn Environment,
+    player: &mut dyn Player,
+    seed: u64,
+    mut look: impl FnMut(&dyn Environment, f32) -> Result<(), CoreError>,
+) -> Result<(), Error> {
+    world.reset(seed);
+    player.begin(seed);
+    loop {
+        let step = world.step(player.action(world))?;
+        look(world, step.score)?;
+        if step.status.is_over() {
+            return Ok(());
+        }
+    }
+}
+
+/// The oracle, when it pays attention.
+struct Clumsy(ChaCha8Rng);
+
+impl Clumsy {
+    fn new() -> Clumsy {
+        Clumsy(stream(0, "clumsy-player", 0))
+    }
+}
+
+impl Player for Clumsy {
+    fn begin(&mut self, seed: u64) {
+        self.0 = stream(seed, "clumsy-player", 0);
+    }
+
+    fn action(&mut self, world: &dyn Environment) -> usize {
+        if unit_f32(&mut self.0) < CLUMSY {
+            below(&mut self.0, world.spec().actions.len())
+        } else {
+            world.oracle_action()
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn surveyed(seed: u64, frames: usize) -> Footage {
+        let mut footage = Footage::new(None, 2 * frames).expect("above 0");
+        survey(&EnvConfig::new("breakout"), seed, frames, &mut footage).expect("the world is there");
+        footage
+    }
+
+    #[test]
+    fn frames_show_the_way_from_the_start_to_the_finished_task() {
+        let footage = surveyed(1, 300);
+        assert!((300..=500).contains(&footage.frames().len()), "{}", footage.frames().len());
+        let scores: Vec<f64> = footage.labels().iter().filter_map(|label| label.score).collect();
+        assert_eq!(scores.len(), footage.frames().len());
+        assert!(scores.contains(&0.0));
+        assert!(scores.iter().any(|&score| score > 57.0), "the wall is cleared");
+    }
+
+    #[test]
+    fn a_seed_gives_its_own_frames() {
+        let (a, b, other) = (surveyed(1, 60), surveyed(1, 60), surveyed(2, 60));
+        assert!(a.frames() == b.frames() && a.labels() == b.labels());
+        assert!(a.frames() != other.frames());
+    }
+
+    #[test]
+    fn an_unknown_world_is_named() {
+        let mut footage = Footage::new(None, 10).expect("above 0");
+        let error = survey(&EnvConfig::new("breakin"), 1, 10, &mut footage).expect_err("there is none").to_string();
+        assert!(error.contains("breakin"), "{error}");
+    }
+}
