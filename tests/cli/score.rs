@@ -13,6 +13,7 @@ use tempfile::TempDir;
 
 mod common;
 mod pictures;
+mod score_plot;
 
 use common::prf;
 

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use prf_core::{DescriptorKind, DistanceScale, MatchMethod, Norm, Rect};
@@ -121,6 +122,9 @@ pub(crate) struct ScoreArgs {
     /// Draw what was compared and what differs; of several frames, the last
     #[arg(long, value_name = "FILE.png")]
     pub(crate) explain: Option<PathBuf>,
+    /// Draw the reward over frames, or over time where all frames have one; unreadable frames are gaps
+    #[arg(long, value_name = "FILE.svg", value_parser = svg_path())]
+    pub(crate) plot: Option<PathBuf>,
     /// Refuse sources of more frames than this
     #[arg(long, value_name = "N", default_value_t = 100_000)]
     pub(crate) max_frames: u64,
@@ -331,6 +335,14 @@ pub(crate) struct GoalOut {
     /// Write over a file that is there already
     #[arg(long)]
     pub(crate) force: bool,
+}
+
+/// Programs go by the name's ending, so an SVG under another one would not open.
+fn svg_path() -> impl TypedValueParser<Value = PathBuf> {
+    PathBufValueParser::new().try_map(|path: PathBuf| {
+        let is_svg = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("svg"));
+        if is_svg { Ok(path) } else { Err("expected a name that ends in .svg") }
+    })
 }
 
 fn parse_numbers<const N: usize>(text: &str, expected: &str) -> Result<[usize; N], String> {

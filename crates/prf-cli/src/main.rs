@@ -12,6 +12,7 @@ mod args;
 mod commands;
 mod error;
 mod files;
+mod plot;
 mod printer;
 #[cfg(feature = "train")]
 mod progress;

@@ -131,8 +131,9 @@ fn probe(goal: &Frame, params: RewardParams) -> Result<Vec<GoalWarning>, Error> 
     let largest = rewards.iter().copied().filter(|&reward| reward < 1.0).fold(0.0, f32::max);
     let least = rewards.iter().copied().fold(1.0, f32::min);
     Ok(match (largest, least) {
-        (reward, _) if reward < NEXT_TO_NOTHING => vec![GoalWarning::Underflow { reward }],
+        // First, since a goal without a gradient gets 1 for everything, and `largest` then is that of nothing.
         (_, reward) if reward > NEXT_TO_ONE => vec![GoalWarning::Saturated { reward }],
+        (reward, _) if reward < NEXT_TO_NOTHING => vec![GoalWarning::Underflow { reward }],
         _ => Vec::new(),
     })
 }
@@ -194,5 +195,12 @@ mod tests {
         let saturated = warnings(faint, DescriptorKind::Direct, RewardParams { hog, ..RewardParams::default() });
         assert!(matches!(saturated[..], [GoalWarning::Saturated { reward }] if reward > 0.99), "{saturated:?}");
         assert!(saturated[0].to_string().contains("upside down"), "{}", saturated[0]);
+    }
+
+    #[test]
+    fn a_goal_too_small_for_a_gradient_is_saturated() {
+        let tiny = Frame::from_vec(2, 2, vec![10, 20, 30, 40]).expect("2 x 2");
+        let found = warnings(tiny, DescriptorKind::Direct, params(1, DistanceScale::SqrtBlocks));
+        assert_eq!(found, [GoalWarning::Saturated { reward: 1.0 }]);
     }
 }

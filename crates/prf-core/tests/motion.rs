@@ -61,6 +61,26 @@ fn a_sequence_by_hand() {
     assert_eq!((template.iterations(), template.tau(), template.shape()), (7, 2.5, [2, 3]));
 }
 
+/// docs/reward.md goes through this by hand.
+#[test]
+fn the_example_of_the_documentation() {
+    let frames = [[200, 0, 0, 0], [0, 200, 0, 0], [0, 0, 200, 0], [20, 0, 0, 200]].map(|pixels| frame(4, 1, &pixels));
+    let mut template = MotionTemplate::new(MotionParams::default()).unwrap();
+    template.observe(frames[0].view()).unwrap();
+    assert_eq!((template.history(), history_image(&template).as_slice()), (&[0.0; 4][..], &[0; 4][..]));
+    for (frame, history, bytes) in [
+        (&frames[1], [0.1, 0.1, 0.0, 0.0], [255, 255, 0, 0]),
+        (&frames[2], [0.1, 0.5, 0.5, 0.0], [51, 255, 255, 0]),
+        (&frames[3], [0.1, 0.5, 0.9, 0.9], [28, 142, 255, 255]),
+    ] {
+        template.observe(frame.view()).unwrap();
+        assert_eq!((template.history(), history_image(&template).as_slice()), (&history[..], &bytes[..]));
+    }
+    let forgetful = MotionParams { delta: DeltaSchedule::Duration(0.5), ..MotionParams::default() };
+    let template = MotionTemplate::of(forgetful, frames.iter().map(Frame::view)).unwrap();
+    assert_eq!(history_image(&template).as_slice(), [0, 142, 255, 255]);
+}
+
 /// With both of the paper's schedules `μ_k < τ_t − δ_t` is `6 k < t − 5`: 0.1 + 0.4 k < 0.1 + 0.4 t − (t + 1)/3, and
 /// 0.1 + 0.3 k < 0.1 + 0.3 t − (t + 1)/4.
 #[test]

@@ -3,15 +3,19 @@
 use std::path::{Path, PathBuf};
 
 use prf_core::io::{self, FrameInfo, FrameSource, Limits};
-use prf_core::{Frame, Goal, GoalWarning, Match, Score, TaskDescriptor, check_goal, draw_explanation};
+use prf_core::{DescriptorKind, Frame, Goal, GoalWarning, Match, Score, TaskDescriptor, check_goal, draw_explanation};
 use serde::Serialize;
 
+use self::curves::Curves;
 use crate::ExitStatus;
 use crate::args::ScoreArgs;
 use crate::error::{CliError, Result};
 use crate::files::write_whole;
+use crate::plot::write_svg;
 use crate::printer::{Format, Printer};
 use crate::settings::{RewardSettings, read_goal, reward_settings};
+
+mod curves;
 
 pub(crate) fn run(args: &ScoreArgs, printer: &mut Printer) -> Result<ExitStatus> {
     let settings = reward_settings(&args.reward)?;
@@ -27,6 +31,7 @@ pub(crate) fn run(args: &ScoreArgs, printer: &mut Printer) -> Result<ExitStatus>
         scored: None,
         rewards: Vec::new(),
         lost: 0,
+        curves: args.plot.as_ref().map(|_| Curves::default()),
         output: Output::new(&args.frames, printer.format()),
     };
     let limits = Limits { max_frames: args.max_frames, ..Limits::default() };
@@ -39,6 +44,9 @@ pub(crate) fn run(args: &ScoreArgs, printer: &mut Printer) -> Result<ExitStatus>
     warn_of_saturation(&scoring.rewards, printer);
     if let Some(path) = &args.explain {
         scoring.explain(path, printer)?;
+    }
+    if let Some(path) = &args.plot {
+        scoring.plot(path, &args.goal, settings.descriptor.kind(), printer)?;
     }
     scoring.status()
 }
@@ -55,6 +63,8 @@ struct Scoring {
     rewards: Vec<f32>,
     /// How many frames or sources could not be scored.
     lost: usize,
+    /// For a diagram, if one was asked for.
+    curves: Option<Curves>,
     output: Output,
 }
 
@@ -64,6 +74,11 @@ impl Scoring {
         let many = source.len_hint() != Some(1);
         if many && matches!(self.output, Output::Sentence) {
             self.output = Output::Table { width: path.to_string_lossy().chars().count() + PLACE };
+        }
+        if let Some(curves) = &mut self.curves
+            && many
+        {
+            curves.begin(path);
         }
         let mut next = Frame::new(1, 1);
         while let Some(read) = source.next_into(&mut next) {
@@ -75,6 +90,9 @@ impl Scoring {
                 }
                 Err(error) => self.lose(error, printer),
             }
+        }
+        if let Some(curves) = &mut self.curves {
+            curves.end();
         }
         Ok(())
     }
@@ -88,11 +106,17 @@ impl Scoring {
         self.output.score(&record, many, printer)?;
         self.scored = Some(record.name(many));
         self.rewards.push(score.reward);
+        if let Some(curves) = &mut self.curves {
+            curves.take(info, score.reward);
+        }
         Ok(())
     }
 
     fn lose(&mut self, error: prf_core::Error, printer: &mut Printer) {
         self.lost += 1;
+        if let Some(curves) = &mut self.curves {
+            curves.lose();
+        }
         printer.error(&error.into());
     }
 
@@ -101,6 +125,13 @@ impl Scoring {
         let picture = draw_explanation(&self.descriptor.explain(self.frame.view()), name);
         write_whole(path, &io::picture_png(&picture), true)?;
         printer.note(format_args!("drew what was compared in {name} into {}", path.display()));
+        Ok(())
+    }
+
+    fn plot(&self, path: &Path, goal: &Path, kind: DescriptorKind, printer: &mut Printer) -> Result<()> {
+        let Some(curves) = self.curves.as_ref().filter(|_| !self.rewards.is_empty()) else { return Ok(()) };
+        write_svg(path, &curves.svg(goal, kind, self.lost)?)?;
+        printer.note(format_args!("drew the rewards of {} into {}", frames(self.rewards.len()), path.display()));
         Ok(())
     }
 
@@ -216,6 +247,10 @@ impl Output {
             Self::Table { width } => printer.line(format_args!("{name:width$}  {reward:>9}  {distance:>9}")),
         }
     }
+}
+
+fn frames(count: usize) -> String {
+    if count == 1 { "1 frame".to_owned() } else { format!("{count} frames") }
 }
 
 /// At most nine characters, with the first digits of even a very small number.

@@ -180,6 +180,34 @@ mod tests {
         assert!(score(None).reward < 0.9);
     }
 
+    /// docs/reward.md goes through this by hand.
+    #[test]
+    fn the_example_of_the_documentation() {
+        let picture = |width, pixels: &[u8]| Frame::from_vec(width, 2, pixels.to_vec()).expect("two rows");
+        let goal = picture(3, &[10, 20, 30, 30, 20, 10]);
+        let frame = picture(4, &[50, 80, 90, 100, 140, 100, 90, 80]);
+        let cell = CellSize::Px(2);
+        let hog = HogParams { orientations: 2, signed: true, cell, ..HogParams::default() };
+        let params = RewardParams { hog, ..RewardParams::default() };
+        for (method, scores, x, reward) in [
+            (MatchMethod::CcorrNormed, [0.9616, 0.9562], 0, 0.8953),
+            (MatchMethod::CcoeffNormed, [0.6876, 1.0], 1, 1.0),
+        ] {
+            let mut map = crate::Plane::from_vec(1, 1, vec![0.0]).expect("one value");
+            let mut matcher = TemplateMatcher::new(&goal, None, method).expect("no mask");
+            matcher.scores_into(frame.view(), &mut map).expect("it fits");
+            let close = |a: f32, b: f32| (a - b).abs() < 1e-4;
+            assert!(map.as_slice().iter().zip(scores).all(|(&got, by_hand)| close(got, by_hand)), "{map:?}");
+
+            let mut descriptor = WindowDescriptor::new(&goal, None, WindowParams { method }, params).expect("valid");
+            let score = descriptor.observe(frame.view()).expect("it fits");
+            let explanation = descriptor.explain(frame.view());
+            assert_eq!(explanation.matched.expect("observed").rect, Rect { x, y: 0, width: 3, height: 2 });
+            assert_eq!(explanation.layout.cells(), [1, 1]);
+            assert!(close(score.reward, reward), "{score:?}");
+        }
+    }
+
     #[test]
     fn a_goal_larger_than_the_frame_is_refused() {
         let mut descriptor =
