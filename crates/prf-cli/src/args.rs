@@ -10,6 +10,10 @@ use prf_core::{DescriptorKind, DistanceScale, MatchMethod, Norm, Rect};
 use crate::commands::init::Preset;
 use crate::printer::Format;
 
+pub(crate) use self::evidence::{EvidenceArgs, InspectArgs, TuneArgs};
+
+mod evidence;
+
 const EXIT_CODES: &str = "\
 Exit codes: 0 done, 1 failed, 2 wrong arguments or config, 3 finished but some input was lost, \
 130 interrupted with the run saved.";
@@ -38,6 +42,12 @@ pub(crate) enum Command {
     /// Make a goal: a part of a picture, a picture with something put into it, or the template of a movement
     #[command(subcommand_required = true, arg_required_else_help = true)]
     Goal(GoalArgs),
+    /// Is this reward any good? Best and worst frames, rank correlation, spread
+    #[command(after_help = evidence::HELP)]
+    Inspect(InspectArgs),
+    /// Which window, cells and norm make the reward good; writes a [reward] for `prf train` and `prf score`
+    #[command(after_help = evidence::HELP)]
+    Tune(TuneArgs),
     /// Write a config file to start from, with its goal picture
     Init(InitArgs),
     /// Print a completion script for a shell
@@ -50,6 +60,8 @@ impl Command {
         match self {
             Self::Eval(args) => args.format,
             Self::Score(args) => args.format,
+            Self::Inspect(args) => args.evidence.format,
+            Self::Tune(args) => args.evidence.format,
             Self::Train(_) | Self::Goal(_) | Self::Init(_) | Self::Completions(_) => Format::Text,
         }
     }
@@ -172,7 +184,7 @@ impl From<MethodArg> for MatchMethod {
     }
 }
 
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Reward options")]
 pub(crate) struct RewardArgs {
     /// Take the reward's settings from a config file's [reward]; the options below change single ones
@@ -212,7 +224,7 @@ pub(crate) struct RewardArgs {
     pub(crate) motion: MotionOptions,
 }
 
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Motion options")]
 pub(crate) struct MotionOptions {
     /// A pixel that changes by more than this has moved, 0 to 254 [default: 30]

@@ -11,6 +11,7 @@ use crate::printer::Printer;
 mod args;
 mod commands;
 mod error;
+mod evidence;
 mod files;
 mod plot;
 mod printer;

@@ -70,9 +70,12 @@ pub use descriptor::{
 };
 pub use ema::EmaState;
 pub use error::{Error, PictureProblem};
-pub use evidence::{Evidence, Figure, FigureKind, Footage, Judgement, Label, Rewards, Verdict, recommend, settings};
+pub use evidence::{
+    Alteration, Altered, Evidence, Figure, FigureKind, Footage, Judgement, Label, Rewards, Verdict, recommend, settings,
+    windows_around,
+};
 #[cfg(feature = "explain")]
-pub use explain::{Picture, draw_explanation};
+pub use explain::{Picture, Ranked, draw_explanation, draw_ranking};
 pub use frame::{Frame, FrameView};
 pub use goal_check::{GoalWarning, check_goal};
 pub use hog::{CellSize, Hog, HogLayout, HogParams, Norm};

@@ -2,7 +2,7 @@
 
 use prf_core::{Error as CoreError, Footage, Frame, Label};
 
-use crate::players::{Oracle, Player, Random};
+use crate::players::{Oracle, Player, Random, play_episode};
 use crate::rng::{ChaCha8Rng, below, stream, unit_f32};
 use crate::{EnvConfig, Environment, Error, registry};
 
@@ -15,49 +15,57 @@ const LONG_EPISODES: usize = 4;
 const LONG: u32 = 20_000;
 
 /// Takes about `frames` frames of the world that `config` describes, a third each of a random player, of a clumsy one (the oracle with
-/// every fifth action at random) and of the oracle, which plays beyond the config's limit until the task is finished. Each
-/// is labelled with the score.
+/// every fifth action at random) and of the oracle, which plays beyond the config's limit until the task is finished. `label` says what the
+/// score at a frame means.
 ///
 /// The same seed gives the same frames.
 ///
 /// # Errors
 /// An unknown world; as [`Footage::observe`].
-pub fn survey(config: &EnvConfig, seed: u64, frames: usize, footage: &mut Footage) -> Result<(), Error> {
+pub fn survey(
+    config: &EnvConfig,
+    seed: u64,
+    frames: usize,
+    label: impl Fn(f32) -> Label,
+    footage: &mut Footage,
+) -> Result<(), Error> {
     let long = EnvConfig { limit_steps: config.limit_steps.max(LONG), ..config.clone() };
-    let share = frames.div_ceil(3);
-    take(config, &mut Random::new(), EPISODES, (seed, share), footage)?;
-    take(config, &mut Clumsy::new(), EPISODES, (seed, share), footage)?;
-    take(&long, &mut Oracle, LONG_EPISODES, (seed, share), footage)
+    let shares: [(&EnvConfig, &mut dyn Player, usize); 3] = [
+        (config, &mut Random::new(), EPISODES),
+        (config, &mut Clumsy::new(), EPISODES),
+        (&long, &mut Oracle, LONG_EPISODES),
+    ];
+    for (config, player, episodes) in shares {
+        let seeds: Vec<u64> = (0..episodes as u64).map(|index| episode_seed(seed, index)).collect();
+        take(config, player, &seeds, frames.div_ceil(3), &label, footage)?;
+    }
+    Ok(())
 }
 
-/// `share` frames, evenly spread over the episodes of a player.
+/// `share` frames, evenly spread over a player's episodes.
 fn take(
     config: &EnvConfig,
     player: &mut dyn Player,
-    episodes: usize,
-    (seed, share): (u64, usize),
+    seeds: &[u64],
+    share: usize,
+    label: &impl Fn(f32) -> Label,
     footage: &mut Footage,
 ) -> Result<(), Error> {
     let mut world = registry::make(config)?;
-    let seeds = || (0..episodes as u64).map(|index| episode_seed(seed, index));
     let mut steps = 0;
-    for seed in seeds() {
-        play(world.as_mut(), player, seed, |_, _| {
-            steps += 1;
-            Ok(())
-        })?;
+    for &seed in seeds {
+        steps += play_episode(world.as_mut(), player, seed)?.steps as usize;
     }
     let stride = (steps / share.max(1)).max(1);
     let mut frame = Frame::new(world.spec().width, world.spec().height);
     let mut index = 0;
-    for seed in seeds() {
+    for &seed in seeds {
         footage.begin();
         play(world.as_mut(), player, seed, |world, score| {
             world.draw_into(&mut frame);
-            let label = Label { score: Some(f64::from(score)), success: None };
             let is_taken = index % stride == 0;
             index += 1;
-            if is_taken { footage.observe(frame.view(), label) } else { footage.pass(frame.view()) }
+            if is_taken { footage.observe(frame.view(), label(score)) } else { footage.pass(frame.view()) }
         })?;
     }
     Ok(())
@@ -113,9 +121,13 @@ impl Player for Clumsy {
 mod tests {
     use super::*;
 
+    fn scored(score: f32) -> Label {
+        Label { score: Some(f64::from(score)), success: None }
+    }
+
     fn surveyed(seed: u64, frames: usize) -> Footage {
         let mut footage = Footage::new(None, 2 * frames).expect("above 0");
-        survey(&EnvConfig::new("breakout"), seed, frames, &mut footage).expect("the world is there");
+        survey(&EnvConfig::new("breakout"), seed, frames, scored, &mut footage).expect("the world is there");
         footage
     }
 
@@ -139,7 +151,7 @@ mod tests {
     #[test]
     fn an_unknown_world_is_named() {
         let mut footage = Footage::new(None, 10).expect("above 0");
-        let error = survey(&EnvConfig::new("breakin"), 1, 10, &mut footage).expect_err("there is none").to_string();
+        let error = survey(&EnvConfig::new("breakin"), 1, 10, scored, &mut footage).expect_err("there is none").to_string();
         assert!(error.contains("breakin"), "{error}");
     }
 }

@@ -10,11 +10,13 @@ mod completions;
 mod eval;
 mod goal;
 pub(crate) mod init;
+mod inspect;
 #[cfg(feature = "train")]
 mod learning;
 mod score;
 #[cfg(feature = "train")]
 mod train;
+mod tune;
 
 /// Does what the command line asks for.
 pub(crate) fn run(command: Command, printer: &mut Printer) -> Result<ExitStatus> {
@@ -27,6 +29,8 @@ pub(crate) fn run(command: Command, printer: &mut Printer) -> Result<ExitStatus>
         Command::Train(_) | Command::Eval(_) => Err(without_training()),
         Command::Score(args) => score::run(&args, printer),
         Command::Goal(args) => goal::run(&args, printer),
+        Command::Inspect(args) => inspect::run(&args, printer),
+        Command::Tune(args) => tune::run(&args, printer),
         Command::Init(args) => init::run(&args, printer),
         Command::Completions(args) => completions::run(&args, printer),
     }

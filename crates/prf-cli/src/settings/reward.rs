@@ -25,6 +25,20 @@ pub(crate) struct RewardSettings {
 ///
 /// Misuse, pointing at the option or at the config's line, whichever set the wrong value.
 pub(crate) fn reward_settings(args: &RewardArgs) -> Result<RewardSettings> {
+    let config = reward_config(args)?;
+    Ok(RewardSettings {
+        descriptor: config.descriptor_params().unwrap_or_default(),
+        params: config.params(),
+        mask: config.window.and_then(|window| window.mask),
+    })
+}
+
+/// The same as a perceptual `[reward]`, complete but for its goal. A mask's path is relative to the current folder.
+///
+/// # Errors
+///
+/// As [`reward_settings`].
+pub(crate) fn reward_config(args: &RewardArgs) -> Result<RewardConfig> {
     let (mut config, source) = match &args.config {
         Some(path) => read(path)?,
         None => (RewardConfig::perceptual(""), None),
@@ -34,11 +48,7 @@ pub(crate) fn reward_settings(args: &RewardArgs) -> Result<RewardSettings> {
     }
     apply(args, &mut config)?;
     config.validate().map_err(|error| blame(error, args, source.as_ref()))?;
-    Ok(RewardSettings {
-        descriptor: config.descriptor_params().unwrap_or_default(),
-        params: config.params(),
-        mask: config.window.and_then(|window| window.mask),
-    })
+    Ok(config)
 }
 
 /// The part of a config that is of interest here.

@@ -21,9 +21,11 @@ pub struct Label {
 /// use prf_core::{DescriptorParams, Footage, Frame, Goal, Label, RewardParams};
 /// let mut footage = Footage::new(None, 1000)?;
 /// let mut frame = Frame::new(30, 30);
-/// for row in 0..20 {
-///     frame.row_mut(29 - row)[row..].fill(200); // ever more of a staircase
-///     footage.observe(frame.view(), Label { score: Some(row as f64), success: None })?;
+/// frame.row_mut(0).fill(200);
+/// frame.row_mut(29).fill(200);
+/// for bars in 1..10 {
+///     frame.row_mut(3 * bars)[2..28].fill(200); // one more
+///     footage.observe(frame.view(), Label { score: Some(bars as f64), success: None })?;
 /// }
 /// let evidence = footage.scored(&DescriptorParams::Direct, &Goal::from(frame.clone()))?;
 /// let judgement = evidence.judge(RewardParams::default())?;

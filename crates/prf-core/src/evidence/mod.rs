@@ -10,6 +10,7 @@ mod probes;
 mod settings;
 mod sweep;
 mod verdict;
+mod windows;
 
 use std::borrow::Cow;
 
@@ -17,9 +18,11 @@ pub use figures::{Figure, FigureKind};
 pub use footage::{Footage, Label};
 pub use settings::settings;
 pub use verdict::{Judgement, Rewards, Verdict, recommend};
+pub use windows::windows_around;
 
 use crate::descriptor::{Comparison, WindowFinder};
 use crate::{DescriptorParams, Error, Frame, Goal, RewardParams};
+pub use probes::Alteration;
 use probes::Probe;
 
 /// The agent's templates `T_A` of many frames, found once, and what is known of them. Any number of reward settings can be
@@ -44,6 +47,19 @@ pub struct Evidence<'a> {
     goal: Frame,
     templates: Cow<'a, [Frame]>,
     knowledge: Knowledge<'a>,
+}
+
+/// A goal that was altered to judge a reward by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Altered<'a> {
+    /// What was done.
+    pub alteration: Alteration,
+    /// To which of the things in it, from 0, the largest first.
+    pub thing: usize,
+    /// How much, from 1: see [`Alteration`].
+    pub level: usize,
+    /// What it looks like now; a window's goal has a border around it.
+    pub frame: &'a Frame,
 }
 
 /// What is known of the templates, in their order.
@@ -94,6 +110,20 @@ impl Evidence<'_> {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.templates.is_empty()
+    }
+
+    /// The altered goals, in the order of their distances; none where the evidence is another.
+    pub fn alterations(&self) -> impl Iterator<Item = Altered<'_>> {
+        let probes = match &self.knowledge {
+            Knowledge::Alterations(probes) => &probes[..],
+            Knowledge::Scores(_) | Knowledge::Demonstrations(_) => &[],
+        };
+        probes.iter().map(|probe| Altered {
+            alteration: probe.alteration,
+            thing: probe.object,
+            level: probe.level,
+            frame: &probe.frame,
+        })
     }
 
     /// `D` of each template under these settings.

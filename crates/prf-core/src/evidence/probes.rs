@@ -3,16 +3,16 @@
 use super::objects::{Object, Scene, paint};
 use crate::{Error, Frame, FrameView, Goal};
 
-/// What was done to the goal.
+/// What was done to a goal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Alteration {
-    /// An object lies elsewhere; the level is how far, in pixels.
+pub enum Alteration {
+    /// A thing lies elsewhere; the level is how far, in pixels.
     Displaced,
-    /// An object is gone.
+    /// A thing is gone.
     Absent,
-    /// An object is larger or smaller; the level counts the sizes.
+    /// A thing is smaller or larger; the level counts the sizes, the nearest to its own first.
     Scaled,
-    /// An object is partly covered; the level is how much of it, in quarters.
+    /// A thing is partly covered; the level is how much of it, in quarters.
     Occluded,
     /// Noise lies over all; the level counts its strengths.
     Noisy,

@@ -3,10 +3,12 @@
 mod canvas;
 mod glyphs;
 mod heat;
+mod ranking;
 
 use std::f32::consts::{PI, TAU};
 
 pub use canvas::Picture;
+pub use ranking::{Ranked, draw_ranking};
 use canvas::{BOX, GREY, INK, Panel, WINDOW};
 
 use crate::{Explanation, FrameView, Norm, Rect};

@@ -1,0 +1,75 @@
+//! The reward that is to be judged.
+
+use std::path::PathBuf;
+
+use prf_core::{DescriptorParams, Goal, RewardParams};
+use prf_envs::{EnvConfig, RewardConfig, RewardSource};
+use serde::Deserialize;
+
+use crate::args::{EvidenceArgs, RewardArgs};
+use crate::error::{CliError, Result};
+use crate::settings::{load, read_goal, reward_config};
+
+/// A reward, its goal, and the world it is for, if a config names one.
+#[derive(Debug)]
+pub(crate) struct Subject {
+    pub(crate) reward: RewardConfig,
+    /// The goal's file, relative to the current folder.
+    pub(crate) goal_path: PathBuf,
+    pub(crate) goal: Goal,
+    pub(crate) env: Option<EnvConfig>,
+}
+
+/// The part of a config that is of interest here.
+#[derive(Deserialize)]
+struct Tables {
+    env: Option<EnvConfig>,
+    reward: RewardConfig,
+}
+
+impl Subject {
+    /// # Errors
+    ///
+    /// Misuse if the config or an option is wrong, or the config's reward is not perceptual; failure if the goal can't be read.
+    pub(crate) fn read(args: &EvidenceArgs, reward: &RewardArgs) -> Result<Subject> {
+        let is_config = args.subject.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"));
+        if is_config { Subject::of_config(args, reward) } else { Subject::of_goal(args, reward) }
+    }
+
+    fn of_config(args: &EvidenceArgs, reward: &RewardArgs) -> Result<Subject> {
+        let path = &args.subject;
+        if reward.config.is_some() {
+            let message = format!("--config: {} is a config already", path.display());
+            return Err(CliError::misuse(message).hint("name one of them").into());
+        }
+        let (tables, source) = load::<Tables>(path, &[])?;
+        if tables.reward.source == RewardSource::Variable {
+            let place = source.locate("reward.source");
+            let message = format!("{place}: `reward.source` is \"variable\": there is no picture whose reward could be judged");
+            return Err(CliError::misuse(message).hint("name a config with a perceptual reward, or a goal").into());
+        }
+        let config = reward_config(&RewardArgs { config: Some(path.clone()), ..reward.clone() })?;
+        let goal = tables.reward.goal.unwrap_or_default();
+        Subject::new(config, source.resolve("reward.goal", &goal), tables.env)
+    }
+
+    fn of_goal(args: &EvidenceArgs, reward: &RewardArgs) -> Result<Subject> {
+        let config = reward_config(reward)?;
+        Subject::new(config, args.subject.clone(), None)
+    }
+
+    fn new(mut reward: RewardConfig, goal_path: PathBuf, env: Option<EnvConfig>) -> Result<Subject> {
+        reward.goal = Some(goal_path.clone());
+        let mask = reward.window.as_ref().and_then(|window| window.mask.as_deref());
+        let goal = read_goal(&goal_path, mask, &reward.descriptor_params().unwrap_or_default())?;
+        Ok(Subject { reward, goal_path, goal, env })
+    }
+
+    pub(crate) fn descriptor(&self) -> DescriptorParams {
+        self.reward.descriptor_params().unwrap_or_default()
+    }
+
+    pub(crate) fn params(&self) -> RewardParams {
+        self.reward.params()
+    }
+}
