@@ -6,7 +6,10 @@ use std::io::Write;
 use std::path::Path;
 
 use prf_core::io::{self, FrameSource, Limits};
-use prf_core::{CellSize, DirectDescriptor, Frame, HogParams, Norm, RewardParams, TaskDescriptor};
+use prf_core::{
+    CellSize, DescriptorKind, DescriptorParams, Error, Frame, Goal, HogParams, Match, MatchMethod, MotionParams, Norm,
+    RewardParams, TaskDescriptor, WindowParams, check_goal,
+};
 use tempfile::NamedTempFile;
 
 /// What PNGs begin with.
@@ -51,26 +54,68 @@ pub fn y4m(data: &[u8]) {
     }
 }
 
-/// A goal and frames of any size: the first bytes say how large they are and how they are compared, the
-/// others are pixels.
+/// A goal and frames of any shape and size, for every descriptor: the first bytes say how large they are and how they
+/// are compared, the others are pixels.
 pub fn goal(data: &[u8]) {
-    let Some((&[width, height, other_width, other_height, cell, norm], pixels)) = data.split_first_chunk() else {
+    let Some((&[width, height, other_width, other_height, cell, norm, kind], pixels)) = data.split_first_chunk() else {
         return;
     };
-    let goal = frame_of(width, height, pixels);
+    let mask = (kind >= 128).then(|| frame_of(width, height, pixels.get(1..).unwrap_or_default()));
+    let goal = Goal { picture: frame_of(width, height, pixels), mask };
+    let (descriptor, params) = (descriptor_of(kind), reward_of(cell, norm));
+    // Whatever it finds suspicious, it has to find it.
+    let _ = check_goal(&goal, descriptor.kind(), params);
+    let Ok(mut scored) = descriptor.describe(&goal, params) else { return };
+    if descriptor.kind() != DescriptorKind::Motion {
+        let itself = scored.observe(goal.picture.view()).expect("a goal fits into itself");
+        assert_eq!(itself.reward, 1.0);
+    }
+    for start in 0..4 {
+        let frame = frame_of(other_width, other_height, pixels.get(start..).unwrap_or_default());
+        observe(scored.as_mut(), &goal.picture, &frame);
+    }
+}
+
+/// Scores a frame, which only a window that doesn't fit into it may refuse.
+fn observe(descriptor: &mut dyn TaskDescriptor, goal: &Frame, frame: &Frame) {
+    let score = match descriptor.observe(frame.view()) {
+        Ok(score) => score,
+        Err(error) => {
+            let fits = goal.width() <= frame.width() && goal.height() <= frame.height();
+            assert!(matches!(error, Error::TemplateTooLarge { .. }) && !fits, "{error}");
+            return;
+        }
+    };
+    assert!(score.reward > 0.0 && score.reward <= 1.0 && score.distance >= 0.0, "{score:?}");
+    if let Some(Match { rect, score }) = descriptor.explain(frame.view()).matched {
+        assert!((-1.0..=1.0).contains(&score), "{score}");
+        assert_eq!((rect.width, rect.height), (goal.width(), goal.height()));
+        assert!(rect.x + rect.width <= frame.width() && rect.y + rect.height <= frame.height(), "{rect:?}");
+    }
+}
+
+fn descriptor_of(kind: u8) -> DescriptorParams {
+    let window = |method| DescriptorParams::Window(WindowParams { method });
+    match kind % 4 {
+        0 => DescriptorParams::Direct,
+        1 => window(MatchMethod::CcorrNormed),
+        2 => window(MatchMethod::CcoeffNormed),
+        _ => DescriptorParams::Motion(MotionParams { threshold: kind / 4 * 4, ..MotionParams::default() }),
+    }
+}
+
+fn reward_of(cell: u8, norm: u8) -> RewardParams {
     let hog = HogParams {
-        cell: CellSize::Px(usize::from(cell % 16) + 1),
+        cell: match cell {
+            0..128 => CellSize::Px(usize::from(cell % 16) + 1),
+            128.. => CellSize::Fraction(f32::from(cell - 127) / 128.0),
+        },
         norm: [Norm::None, Norm::L1, Norm::L1Sqrt, Norm::L2, Norm::L2Hys][usize::from(norm % 5)],
         block_cells: usize::from(norm / 5 % 3) + 1,
+        signed: norm >= 128,
         ..HogParams::default()
     };
-    let Ok(mut descriptor) = DirectDescriptor::new(&goal, RewardParams { hog, ..RewardParams::default() }) else {
-        return;
-    };
-    assert_eq!(descriptor.observe(goal.view()).expect("any frame will do").reward, 1.0);
-    let other = frame_of(other_width, other_height, pixels);
-    let score = descriptor.observe(other.view()).expect("any frame will do");
-    assert!(score.reward > 0.0 && score.reward <= 1.0 && score.distance >= 0.0, "{score:?}");
+    RewardParams { hog, ..RewardParams::default() }
 }
 
 /// Sides of 1 to 32, the pixels over and over again.

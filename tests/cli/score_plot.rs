@@ -202,7 +202,7 @@ fn more_sources_than_can_be_told_apart_are_drawn_all_the_same() {
 fn rewards_that_are_all_equal_or_tiny_have_axes_too() {
     let folder = folder();
     let equal = plot(&folder, &["goal.png", "goal.png", "goal.png"], 0);
-    assert!(equal.says("1.00") && equal.curves().count() == 1, "{:?}", equal.texts);
+    assert!(equal.says("1.000") && equal.curves().count() == 1, "{:?}", equal.texts);
     let pictures = ["goal.png", "frames/5.png", "frames/6.png", "--scale", "none", "--cell-px", "1"];
     let tiny = plot(&folder, &pictures, 0);
     assert!(tiny.texts.iter().any(|text| text.contains("e-")), "{:?}", tiny.texts);

@@ -3,7 +3,7 @@
 use crate::FrameView;
 use crate::region::Region;
 
-/// A rectangle of pixels; `x` and `y` are its left column and top row.
+/// A rectangle of a picture, in pixels; `x` and `y` are its left column and top row, counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rect {
     /// Left column.
@@ -17,7 +17,8 @@ pub struct Rect {
 }
 
 /// The smallest box that holds every pixel that is not black, which is also the smallest box around
-/// their convex hull. A picture that is black all over has no hull: the box is the whole picture.
+/// their convex hull. A picture that is black all over has no hull: the box is the whole picture (paper, section
+/// "Perceptual reward functions").
 ///
 /// ```
 /// use prf_core::{crop_box, Frame, Rect};

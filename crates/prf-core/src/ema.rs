@@ -3,7 +3,7 @@
 use crate::{Error, FrameView};
 
 /// Exponential moving average of the frames of an episode: `a_t = (1 − λ) s_t + λ a_{t−1}` with
-/// `a_0 = s_0`. Kept in `f32`, handed out as bytes.
+/// `a_0 = s_0` (paper, section "State representation"). Kept in `f32`, handed out as bytes.
 ///
 /// ```
 /// use prf_core::{EmaState, FrameView};
@@ -49,7 +49,7 @@ impl EmaState {
         self.rounded.fill(0);
     }
 
-    /// Takes the frame `s_t` in and returns `a_t`, each value rounded to the nearest byte.
+    /// Takes the frame `s_t` in and returns `a_t`, `width * height` values row by row, each rounded to the nearest byte.
     ///
     /// # Panics
     ///

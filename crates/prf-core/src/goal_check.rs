@@ -76,7 +76,8 @@ impl std::fmt::Display for GoalWarning {
     }
 }
 
-/// What is suspicious about a goal for this kind of descriptor and these parameters; nothing for most goals.
+/// What is suspicious about a goal for this kind of descriptor and these parameters; nothing for most goals. The goal of
+/// motion is its template in a picture.
 ///
 /// ```
 /// use prf_core::{DescriptorKind, Frame, Goal, GoalWarning, RewardParams, check_goal};

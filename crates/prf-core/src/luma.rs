@@ -11,7 +11,7 @@ const RED: u32 = 19_595;
 const GREEN: u32 = 38_470;
 const BLUE: u32 = 7_471;
 
-/// Luma of one colour.
+/// Luma of one colour, 0 to 255: `0.299 R + 0.587 G + 0.114 B`, rounded.
 ///
 /// ```
 /// use prf_core::luma;
@@ -25,7 +25,7 @@ pub fn rgb([r, g, b]: [u8; 3]) -> u8 {
     ((sum + (1 << 15)) >> 16) as u8
 }
 
-/// A grey value with opacity `alpha` (255 opaque), laid on black.
+/// A grey value with opacity `alpha` (255 opaque), laid on black: `grey · alpha/255`, rounded.
 #[must_use]
 pub fn on_black(grey: u8, alpha: u8) -> u8 {
     // The product is at most 255 * 255, so this is at most 255.

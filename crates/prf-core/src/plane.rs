@@ -7,7 +7,7 @@ use crate::{Error, FrameView};
 /// The largest value that a pixel may have; its square still fits an `f32` many times over.
 const MAX_VALUE: f32 = 1e6;
 
-/// A grey picture that owns its pixels: `height` rows of `width` floats, 0 black and 1 white.
+/// A grey picture that owns its pixels: `height` rows of `width` floats, 0 black and 1 white. Both sides are at least 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plane {
     width: usize,
@@ -69,7 +69,7 @@ impl Plane {
     }
 }
 
-/// A grey picture of floats whose pixels are borrowed.
+/// A grey picture whose pixels are borrowed: `height` rows of `width` floats with no gap between them, 0 black and 1 white.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlaneView<'a> {
     width: usize,

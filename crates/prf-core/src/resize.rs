@@ -11,7 +11,8 @@ use crate::region::{Region, Sample};
 use crate::{Error, FrameView, PlaneView};
 
 /// Rescales pictures and keeps its working memory: after the first picture of a size nothing is
-/// allocated.
+/// allocated. Bilinear, with pixel centres at half integers; along a side that shrinks the filter is widened, so that no
+/// pixel is lost. (Paper, section "Perceptual reward functions", which leaves the filter open.)
 ///
 /// ```
 /// use prf_core::{FrameView, Resizer};

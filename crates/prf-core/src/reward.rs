@@ -4,7 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::{Error, HogLayout, HogParams};
 
-/// Parameters of a perceptual reward. In a file, every key may be left out.
+/// Parameters of a perceptual reward `F(T_A, T_G) = exp(−D)` (paper, section "Perceptual reward functions"). In a file, every
+/// key may be left out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct RewardParams {
@@ -40,7 +41,7 @@ pub enum DistanceScale {
 }
 
 impl DistanceScale {
-    /// The divisor for HOGs of this layout.
+    /// The divisor for HOGs of this layout, at least 1.
     #[must_use]
     pub fn divisor(self, layout: &HogLayout) -> f32 {
         let [rows, columns] = layout.blocks();
@@ -52,7 +53,7 @@ impl DistanceScale {
     }
 }
 
-/// How near a template is to the goal.
+/// How near a template is to the goal (paper, section "Perceptual reward functions").
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Score {
     /// `F = exp(-D)`, above 0 and at most 1; 1 for the goal itself. Where `exp` underflows it is the

@@ -75,7 +75,7 @@ fn nothing_changed_in_a_chunk_panics() {
 fn no_goal_panics() {
     let noise = |i: usize| (i.wrapping_mul(2_654_435_761) >> 13) as u8;
     for start in 0..3000 {
-        let data: Vec<u8> = (start * 40..start * 40 + 6 + start % 50).map(noise).collect();
+        let data: Vec<u8> = (start * 40..start * 40 + 7 + start % 50).map(noise).collect();
         targets::goal(&data);
     }
 }

@@ -4,7 +4,10 @@
 use prf_core::{Error, Frame, Match, MatchMethod, Plane, Rect, TemplateMatcher};
 use proptest::prelude::*;
 
+mod shapes;
+
 use MatchMethod::{CcoeffNormed, CcorrNormed};
+use shapes::any_shape;
 
 fn frame(width: usize, pixels: &[u8]) -> Frame {
     Frame::from_vec(width, pixels.len() / width, pixels.to_vec()).unwrap()
@@ -163,7 +166,7 @@ fn frame_and_part() -> impl Strategy<Value = (Frame, Rect)> {
 
 proptest! {
     #[test]
-    fn scores_stay_within_their_bounds(template in picture(1..24), frame in picture(24..60), method in method()) {
+    fn scores_stay_within_their_bounds(template in any_shape(24), frame in picture(24..60), method in method()) {
         let least = if method == CcorrNormed { 0.0 } else { -1.0 };
         let mut matcher = TemplateMatcher::new(&template, None, method).unwrap();
         let map = scores(&mut matcher, &frame);
@@ -188,7 +191,7 @@ proptest! {
 
     #[test]
     fn brightness_and_contrast_do_not_count_without_means(
-        template in picture(1..20), pixels in prop::collection::vec(0u8..80, 900), gain in 1u8..4, offset in 0u8..16,
+        template in any_shape(20), pixels in prop::collection::vec(0u8..80, 900), gain in 1u8..4, offset in 0u8..16,
     ) {
         let dark = frame(30, &pixels);
         let bright = frame(30, &pixels.iter().map(|v| v * gain + offset).collect::<Vec<_>>());
@@ -196,6 +199,42 @@ proptest! {
         let (a, b) = (scores(&mut matcher, &dark), scores(&mut matcher, &bright));
         for (a, b) in a.as_slice().iter().zip(b.as_slice()) {
             prop_assert!((a - b).abs() < 1e-4, "{a} and {b}");
+        }
+    }
+
+    #[test]
+    fn a_templates_brightness_and_contrast_do_not_count_without_means(
+        dark in any_shape(20), frame in picture(20..40), gain in 1u8..4, offset in 0u8..16,
+    ) {
+        let pixels = |change: &dyn Fn(u8) -> u8| dark.as_slice().iter().map(|v| change(v % 80)).collect::<Vec<_>>();
+        let bright = self::frame(dark.width(), &pixels(&|v| v * gain + offset));
+        let dark = self::frame(dark.width(), &pixels(&|v| v));
+        let (a, b) = (map(&dark, None, CcoeffNormed, &frame), map(&bright, None, CcoeffNormed, &frame));
+        for (a, b) in a.iter().zip(&b) {
+            prop_assert!((a - b).abs() < 1e-4, "{a} and {b}");
+        }
+    }
+
+    /// Also of templates with several best windows, as the first of them moves along.
+    #[test]
+    fn a_translated_template_moves_the_match_by_as_much(
+        template in any_shape(12), from in (12usize..37, 12usize..37), to in (12usize..37, 12usize..37),
+        method in method(),
+    ) {
+        let found = |(x, y): (usize, usize)| {
+            let mut frame = Frame::new(60, 60);
+            for row in 0..template.height() {
+                frame.row_mut(y + row)[x..x + template.width()].copy_from_slice(template.row(row));
+            }
+            best(&template, method, &frame)
+        };
+        let (a, b) = (found(from), found(to));
+        prop_assert_eq!(a.score, b.score);
+        if a.score == 0.0 {
+            prop_assert_eq!((a.rect.x, a.rect.y, b.rect.x, b.rect.y), (0, 0, 0, 0));
+        } else {
+            prop_assert_eq!(a.score, 1.0);
+            prop_assert_eq!((b.rect.x + from.0, b.rect.y + from.1), (a.rect.x + to.0, a.rect.y + to.1));
         }
     }
 

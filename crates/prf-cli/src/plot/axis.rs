@@ -32,10 +32,10 @@ impl Axis {
     }
 
     /// Rewards from `least` to `largest`: all there can be, 0 to 1, if they spread far; otherwise as much as shows
-    /// how they differ, but no less than a tenth of them, so that rounding doesn't look like a result.
+    /// how they differ, but no less than a hundredth of them, so that rounding doesn't look like a result.
     pub(crate) fn rewards(least: f64, largest: f64) -> Axis {
         const FAR: f64 = 0.5;
-        const LEAST_SPREAD: f64 = 0.1;
+        const LEAST_SPREAD: f64 = 0.01;
         let (mut low, mut high) = (0.0, 1.0);
         if largest - least < FAR {
             let spread = (largest - least).max(LEAST_SPREAD * largest);

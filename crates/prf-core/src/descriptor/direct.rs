@@ -7,7 +7,8 @@ use crate::{Error, Frame, FrameView, RewardParams, Score};
 /// Direct task descriptor: the agent's frame itself is compared with a picture of the goal.
 ///
 /// Both are cropped to what is not black, the one with the smaller area is rescaled to the other's
-/// size, and their HOGs are compared. Frames may have any size, also another than the goal's.
+/// size, and their HOGs are compared. Frames may have any size, also another than the goal's. (Paper, section "Mirror
+/// task descriptors".)
 ///
 /// ```
 /// use prf_core::{DirectDescriptor, Frame, RewardParams, TaskDescriptor};
@@ -29,7 +30,7 @@ pub struct DirectDescriptor {
 }
 
 impl DirectDescriptor {
-    /// Prepares a goal.
+    /// Prepares a goal, a picture of any size with 0 as its background.
     ///
     /// Frames are never refused later: where a crop is too small for the cells or blocks asked for,
     /// the cells shrink until one block fits, and then the block. A goal that is too small by itself

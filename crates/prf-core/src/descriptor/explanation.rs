@@ -28,8 +28,9 @@ pub struct Explanation<'a> {
 }
 
 impl Explanation<'_> {
-    /// How much each cell adds to the squared distance of the features, `[rows, columns]` row by row. Their sum is
-    /// `‖H(T_A) − H(T_G)‖²`: a cell that lies in several blocks gets its share of each.
+    /// How much each cell adds to the squared distance of the features, at least 0: `[rows, columns]` as
+    /// [`HogLayout::cells`] has them, row by row. Their sum is `‖H(T_A) − H(T_G)‖²`, before the scale divides its root: a cell
+    /// that lies in several blocks gets its share of each.
     #[must_use]
     pub fn cell_differences(&self) -> Vec<f32> {
         let ([rows, columns], [_, block_columns]) = (self.layout.cells(), self.layout.blocks());

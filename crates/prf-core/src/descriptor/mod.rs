@@ -17,14 +17,16 @@ pub use window::{WindowDescriptor, WindowParams};
 
 use crate::{Error, FrameView, Score};
 
-/// A goal, and a way to make a template of the agent's frames that can be compared with it.
+/// A goal `T_G`, and a way to make a template `T_A` of the agent's frames that can be compared with it (paper, section
+/// "Visual task descriptors").
 pub trait TaskDescriptor: Send {
     /// Gets ready for frames of this shape, `[height, width]` in pixels. [`observe`](TaskDescriptor::observe) does so by
     /// itself; asking before tells early whether it can.
     ///
     /// # Errors
     ///
-    /// When the goal can't be compared with frames of this shape.
+    /// [`Error::TemplateTooLarge`] when the goal is a window that doesn't fit into frames of this shape. The other
+    /// descriptors take any.
     fn prepare(&mut self, shape: [usize; 2]) -> Result<(), Error>;
 
     /// Begins an episode: what was seen before no longer counts.
@@ -34,7 +36,8 @@ pub trait TaskDescriptor: Send {
     ///
     /// # Errors
     ///
-    /// As [`prepare`](TaskDescriptor::prepare); nothing has been taken in then.
+    /// As [`prepare`](TaskDescriptor::prepare), and [`Error::FrameSize`] when motion began the episode with another size;
+    /// nothing has been taken in then.
     fn observe(&mut self, mirror: FrameView<'_>) -> Result<Score, Error>;
 
     /// Where the last score came from; `mirror` is the frame that was observed.

@@ -10,7 +10,8 @@ use crate::{Error, Frame, FrameView, MotionParams, MotionTemplate, RewardParams,
 ///
 /// The agent's template is the motion template `Ψ(S)` of all frames since [`reset`](TaskDescriptor::reset), the goal's
 /// is `Ψ(G)` of a sequence that shows the task. Only where and in which order something moves counts, so the two
-/// may show different bodies. Templates are compared as by the [`DirectDescriptor`](crate::DirectDescriptor).
+/// may show different bodies. Templates are compared as by the [`DirectDescriptor`](crate::DirectDescriptor). All frames of
+/// an episode have one size, which need not be the goal's. (Paper, section "Motion template task descriptor".)
 ///
 /// ```
 /// use prf_core::{Frame, MotionDescriptor, MotionParams, MotionTemplate, RewardParams, TaskDescriptor};
@@ -49,7 +50,8 @@ impl MotionDescriptor {
     ///
     /// # Errors
     ///
-    /// As [`DirectDescriptor::new`](crate::DirectDescriptor::new) and [`MotionTemplate::new`].
+    /// As [`DirectDescriptor::new`](crate::DirectDescriptor::new) and [`MotionTemplate::new`], whose keys get `motion.` before
+    /// them.
     pub fn new(goal: &Frame, motion: MotionParams, params: RewardParams) -> Result<MotionDescriptor, Error> {
         Ok(MotionDescriptor {
             motion: MotionTemplate::new(motion).map_err(|error| error.within("motion"))?,

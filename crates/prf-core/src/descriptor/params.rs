@@ -19,7 +19,8 @@ pub enum DescriptorKind {
 }
 
 impl DescriptorKind {
-    /// The side of a HOG cell that the paper uses with this descriptor: 0.03, 0.1 or 0.05 of the height.
+    /// The side of a HOG cell that the paper uses with this descriptor: 0.03 (direct), 0.1 (window) or 0.05 (motion) of the
+    /// cropped template's height (section "Experiments and results").
     #[must_use]
     pub fn paper_cell(self) -> CellSize {
         CellSize::Fraction(match self {

@@ -18,7 +18,7 @@ pub struct WindowParams {
 /// Window task descriptor: the part of the agent's frame that matches the goal best is compared with it.
 ///
 /// The goal slides over the frame; the window of the highest normalised correlation is the agent's template. Both are
-/// then compared as by the [`DirectDescriptor`](crate::DirectDescriptor).
+/// then compared as by the [`DirectDescriptor`](crate::DirectDescriptor). (Paper, section "Mirror task descriptors".)
 ///
 /// ```
 /// use prf_core::{Frame, Rect, RewardParams, TaskDescriptor, WindowDescriptor, WindowParams};
@@ -86,7 +86,7 @@ impl WindowFinder {
 }
 
 impl WindowDescriptor {
-    /// Prepares a goal. Where `mask`, a picture of the goal's size, is black the goal doesn't count.
+    /// Prepares a goal of any size; frames have to be at least as wide and as high. Where `mask`, a picture of the goal's size, is black the goal doesn't count.
     ///
     /// # Errors
     ///

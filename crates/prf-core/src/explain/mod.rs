@@ -20,7 +20,7 @@ const MARGIN: usize = 20;
 const HEADLINE: usize = 54;
 const CAPTION: usize = 44;
 
-/// Draws an explanation, 1160×902 px: goal, agent and the share of each cell in the distance above, the HOGs of both and the
+/// Draws an explanation, 1160×882 px: goal, agent and the share of each cell in the distance above, the HOGs of both and the
 /// numbers in words below. `name` stands in the headline, such as the frame's file.
 ///
 /// ```
@@ -31,7 +31,8 @@ const CAPTION: usize = 44;
 /// let mut descriptor = DirectDescriptor::new(&goal, RewardParams::default())?;
 /// descriptor.observe(frame.view())?;
 /// let picture = draw_explanation(&descriptor.explain(frame.view()), "frame 17");
-/// assert_eq!(picture.as_rgb().len(), picture.width() * picture.height() * 3);
+/// assert_eq!((picture.width(), picture.height()), (1160, 882));
+/// assert_eq!(picture.as_rgb().len(), 1160 * 882 * 3);
 /// # Ok::<(), prf_core::Error>(())
 /// ```
 #[must_use]

@@ -14,8 +14,8 @@ use crate::gradient;
 use crate::region::{Region, Sample};
 use crate::{Error, FrameView, PlaneView};
 
-/// Computes HOGs and keeps its working memory, so that after the first picture of a size nothing is
-/// allocated.
+/// Computes HOGs (paper, section "HOG features") and keeps its working memory, so that after the first picture of a size
+/// nothing is allocated.
 ///
 /// Equal to `skimage.feature.hog` (`feature_vector=True`, `transform_sqrt=False`) to 1e-5.
 ///

@@ -6,7 +6,7 @@ use crate::Error;
 
 const MAX_ORIENTATIONS: usize = 64;
 
-/// Parameters of a HOG. In a file, every key may be left out.
+/// Parameters of a HOG (paper, section "HOG features"). In a file, every key may be left out.
 ///
 /// ```
 /// use prf_core::{CellSize, HogParams, Norm};

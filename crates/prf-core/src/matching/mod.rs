@@ -32,7 +32,8 @@ use template::Template;
 #[cfg(test)]
 mod tests;
 
-/// How a window `I` of a frame is compared with the template `T`; sums go over all pixels, or those under the mask.
+/// How a window `I` of a frame is compared with the template `T`; sums go over all pixels, or those under the mask. Where a
+/// denominator is 0 the score is 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum MatchMethod {
@@ -55,6 +56,7 @@ pub struct Match {
 /// Finds a template in frames. Keeps all that depends on the template and on the frames' size, so that nothing is
 /// allocated after the first frame of a size.
 ///
+/// This is the paper's search for the window with the largest normalised correlation (section "Mirror task descriptors").
 /// Small templates are correlated directly, all others by Fourier transforms; the best match is the same either way.
 ///
 /// ```

@@ -12,7 +12,8 @@ use kernel::{EnergyBytes, HistoryBytes, Moment, Observe, Update};
 use crate::simd::Simd;
 use crate::{Error, Frame, FrameView};
 
-/// Motion template `Ψ`: one picture of where and when something moved in a sequence of frames.
+/// Motion template `Ψ`: one picture of where and when something moved in a sequence of frames (paper, section "Motion
+/// templates").
 ///
 /// With the silhouette `σ_t` of the pixels that differ by more than the threshold (the paper leaves
 /// open what happens at the threshold itself; here that is no motion) between two frames, each pixel becomes

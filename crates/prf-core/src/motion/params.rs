@@ -12,7 +12,8 @@ const MAX_THRESHOLD: u8 = 254;
 /// Keeps `τ` far from where an `f32` has no room for it or for its steps.
 const TAU_RANGE: RangeInclusive<f64> = 0.001..=1000.0;
 
-/// Parameters of a motion template. In a file, every key may be left out.
+/// Parameters of a motion template (paper, sections "Motion templates" and "Motion template task"). In a file, every key may
+/// be left out.
 ///
 /// Iterations are counted from `t = 0`, the silhouette of the first two frames. With the paper's schedules
 /// many a movement gets exactly as old as `δ` and has to be kept then (0.1 is not below 1.6 − 6/4). So times are
@@ -33,7 +34,7 @@ pub struct MotionParams {
     pub tau_start: f64,
     /// How much `τ` grows from one iteration to the next, 0.001 to 1000.
     pub tau_step: f64,
-    /// How long a movement is remembered.
+    /// How long a movement is remembered, in the unit of `τ`.
     pub delta: DeltaSchedule,
 }
 
@@ -88,7 +89,7 @@ pub enum DeltaSchedule {
 }
 
 impl DeltaSchedule {
-    /// `δ_t`.
+    /// `δ_t`, at least 0, in the unit of `τ`.
     ///
     /// ```
     /// use prf_core::DeltaSchedule;
