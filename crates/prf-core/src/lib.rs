@@ -71,8 +71,8 @@ pub use descriptor::{
 pub use ema::EmaState;
 pub use error::{Error, PictureProblem};
 pub use evidence::{
-    Alteration, Altered, Evidence, Figure, FigureKind, Footage, Judgement, Label, Rewards, Verdict, recommend, settings,
-    windows_around,
+    Alteration, Altered, Evidence, Figure, FigureKind, Footage, Judgement, Label, Rewards, Verdict, recommend,
+    settings, windows_around,
 };
 #[cfg(feature = "explain")]
 pub use explain::{Picture, Ranked, draw_explanation, draw_ranking};

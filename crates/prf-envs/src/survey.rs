@@ -151,7 +151,8 @@ mod tests {
     #[test]
     fn an_unknown_world_is_named() {
         let mut footage = Footage::new(None, 10).expect("above 0");
-        let error = survey(&EnvConfig::new("breakin"), 1, 10, scored, &mut footage).expect_err("there is none").to_string();
+        let error =
+            survey(&EnvConfig::new("breakin"), 1, 10, scored, &mut footage).expect_err("there is none").to_string();
         assert!(error.contains("breakin"), "{error}");
     }
 }

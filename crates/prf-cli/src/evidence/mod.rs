@@ -144,7 +144,7 @@ impl Known {
                 match (read, label) {
                     (Ok(info), Some(label)) => {
                         self.footage.observe(frame.view(), label)?;
-                        self.remember(&info);
+                        self.remember(&info, args.frames.len() == 1);
                     }
                     (Ok(_), None) => self.footage.pass(frame.view())?,
                     (Err(error), _) => self.lose(error, printer),
@@ -154,9 +154,13 @@ impl Known {
         Ok(())
     }
 
-    fn remember(&mut self, info: &FrameInfo) {
+    fn remember(&mut self, info: &FrameInfo, is_only: bool) {
         let file = info.path.file_name().unwrap_or(info.path.as_os_str()).to_string_lossy().into_owned();
-        let name = if info.time_s.is_some() { format!("{file} #{}", info.index) } else { file };
+        let name = match info.time_s {
+            Some(_) if is_only => format!("#{}", info.index),
+            Some(_) => format!("#{} of {file}", info.index),
+            None => file,
+        };
         self.names.insert(self.footage.shown() - 1, name);
         // Only the names of frames that are kept are needed, and names are dropped seldom, not at each frame.
         if self.names.len() > 4 * self.footage.frames().len().max(1000) {

@@ -9,7 +9,8 @@ use prf_core::io::FrameInfo;
 
 use crate::error::{CliError, Result};
 
-const COLUMNS: &str = "the first line names the columns: score, success or both, and frame if lines are not in the frames' order";
+const COLUMNS: &str =
+    "the first line names the columns: score, success or both, and frame if lines are not in the frames' order";
 
 /// Labels, and which frame each belongs to.
 #[derive(Debug)]
@@ -79,7 +80,9 @@ impl Scores {
             None if lines != frames => {
                 format!("{} has lines for {lines} frames, expected {frames}: one for each, in their order", self.path)
             }
-            Some(_) if used == 0 => format!("none of the {lines} frames that {} names is among the {frames}", self.path),
+            Some(_) if used == 0 => {
+                format!("none of the {lines} frames that {} names is among the {frames}", self.path)
+            }
             _ => return Ok(()),
         };
         Err(CliError::misuse(message).hint(COLUMNS).into())
@@ -111,7 +114,8 @@ impl Columns {
     }
 
     fn label(&self, record: &StringRecord, success_at: Option<f64>) -> std::result::Result<Label, String> {
-        let value = |column: Option<usize>| column.and_then(|column| record.get(column)).filter(|text| !text.is_empty());
+        let value =
+            |column: Option<usize>| column.and_then(|column| record.get(column)).filter(|text| !text.is_empty());
         let score = value(self.score).map(score).transpose()?;
         let success = value(self.success).map(success).transpose()?;
         Ok(Label { score, success: success.or_else(|| reached(score, success_at)) })

@@ -1,6 +1,6 @@
 //! The reward that is to be judged.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use prf_core::{DescriptorParams, Goal, RewardParams};
 use prf_envs::{EnvConfig, RewardConfig, RewardSource};
@@ -13,9 +13,11 @@ use crate::settings::{load, read_goal, reward_config};
 /// A reward, its goal, and the world it is for, if a config names one.
 #[derive(Debug)]
 pub(crate) struct Subject {
+    /// Its paths are as the config has them, or as they were typed.
     pub(crate) reward: RewardConfig,
-    /// The goal's file, relative to the current folder.
+    /// Files of the goal and of its mask, relative to the current folder.
     pub(crate) goal_path: PathBuf,
+    pub(crate) mask_path: Option<PathBuf>,
     pub(crate) goal: Goal,
     pub(crate) env: Option<EnvConfig>,
 }
@@ -45,24 +47,34 @@ impl Subject {
         let (tables, source) = load::<Tables>(path, &[])?;
         if tables.reward.source == RewardSource::Variable {
             let place = source.locate("reward.source");
-            let message = format!("{place}: `reward.source` is \"variable\": there is no picture whose reward could be judged");
+            let message =
+                format!("{place}: `reward.source` is \"variable\": there is no picture whose reward could be judged");
             return Err(CliError::misuse(message).hint("name a config with a perceptual reward, or a goal").into());
         }
-        let config = reward_config(&RewardArgs { config: Some(path.clone()), ..reward.clone() })?;
-        let goal = tables.reward.goal.unwrap_or_default();
-        Subject::new(config, source.resolve("reward.goal", &goal), tables.env)
+        let mut config = reward_config(&RewardArgs { config: Some(path.clone()), ..reward.clone() })?;
+        let mask_path = config.window.as_ref().and_then(|window| window.mask.clone());
+        let goal_path = source.resolve("reward.goal", tables.reward.goal.as_deref().unwrap_or(Path::new("")));
+        config.goal = tables.reward.goal;
+        if let (Some(window), Some(named), None) = (&mut config.window, tables.reward.window, &reward.mask) {
+            window.mask = named.mask;
+        }
+        Subject::new(config, (goal_path, mask_path), tables.env)
     }
 
     fn of_goal(args: &EvidenceArgs, reward: &RewardArgs) -> Result<Subject> {
-        let config = reward_config(reward)?;
-        Subject::new(config, args.subject.clone(), None)
+        let mut config = reward_config(reward)?;
+        config.goal = Some(args.subject.clone());
+        let mask_path = config.window.as_ref().and_then(|window| window.mask.clone());
+        Subject::new(config, (args.subject.clone(), mask_path), None)
     }
 
-    fn new(mut reward: RewardConfig, goal_path: PathBuf, env: Option<EnvConfig>) -> Result<Subject> {
-        reward.goal = Some(goal_path.clone());
-        let mask = reward.window.as_ref().and_then(|window| window.mask.as_deref());
-        let goal = read_goal(&goal_path, mask, &reward.descriptor_params().unwrap_or_default())?;
-        Ok(Subject { reward, goal_path, goal, env })
+    fn new(
+        reward: RewardConfig,
+        (goal_path, mask_path): (PathBuf, Option<PathBuf>),
+        env: Option<EnvConfig>,
+    ) -> Result<Subject> {
+        let goal = read_goal(&goal_path, mask_path.as_deref(), &reward.descriptor_params().unwrap_or_default())?;
+        Ok(Subject { reward, goal_path, mask_path, goal, env })
     }
 
     pub(crate) fn descriptor(&self) -> DescriptorParams {

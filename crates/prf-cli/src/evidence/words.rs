@@ -1,6 +1,8 @@
 //! Judgements in words and in JSON.
 
-use prf_core::{Alteration, Altered, CellSize, Figure, HogParams, Judgement, Norm, Rect, RewardParams, Rewards, Verdict};
+use prf_core::{
+    Alteration, Altered, CellSize, Figure, HogParams, Judgement, Norm, Rect, RewardParams, Rewards, Verdict,
+};
 use prf_envs::RewardConfig;
 use serde::Serialize;
 use serde_json::{Map, Value};
@@ -84,7 +86,10 @@ pub(crate) fn verdict(judgement: &Judgement) -> String {
     match judgement.verdict {
         Verdict::Good => format!("{name}: the reward orders the frames as the task does"),
         Verdict::Weak if judgement.rewards.are_narrow() => {
-            format!("{name}: most rewards lie within {:.4} of each other, so an agent sees little of their order", judgement.rewards.spread())
+            format!(
+                "{name}: most rewards lie within {:.4} of each other, so an agent sees little of their order",
+                judgement.rewards.spread()
+            )
         }
         Verdict::Weak => format!("{name}: {figure}"),
         Verdict::Misleading => format!("{name}: the reward punishes progress ({figure})"),

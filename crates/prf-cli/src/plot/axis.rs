@@ -31,6 +31,16 @@ impl Axis {
         Axis::over("time (s)", 0.0, last, nice_step(last))
     }
 
+    /// Whole pixels from 0 to `last`.
+    pub(crate) fn pixels(last: f64) -> Axis {
+        Axis::over("displaced by (px)", 0.0, last, nice_step(last).max(1.0))
+    }
+
+    /// Scores from `least` to `largest`.
+    pub(crate) fn scores(least: f64, largest: f64) -> Axis {
+        Axis::over("score", least, largest, nice_step(largest - least))
+    }
+
     /// Rewards from `least` to `largest`: all there can be, 0 to 1, if they spread far; otherwise as much as shows
     /// how they differ, but no less than a hundredth of them, so that rounding doesn't look like a result.
     pub(crate) fn rewards(least: f64, largest: f64) -> Axis {

@@ -46,6 +46,15 @@ impl Curve {
     }
 }
 
+/// How the points of a series are joined.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Joined {
+    /// By a line, from one place to the next.
+    Line,
+    /// Not at all: places come in any order and more than once.
+    Dots,
+}
+
 /// A diagram of curves.
 pub(crate) struct Diagram<'a> {
     pub(crate) title: String,
@@ -53,6 +62,7 @@ pub(crate) struct Diagram<'a> {
     pub(crate) x: Axis,
     pub(crate) y: Axis,
     pub(crate) curves: &'a [Curve],
+    pub(crate) joined: Joined,
 }
 
 type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<Axis, Axis>>;
@@ -61,7 +71,7 @@ impl Diagram<'_> {
     /// The diagram as SVG.
     pub(crate) fn svg(&self) -> Result<String> {
         let names = self.curves.iter().map(|curve| curve.name.as_str());
-        let legend = Legend::new(names, INNER_WIDTH);
+        let legend = Legend::new(names, self.joined == Joined::Line, INNER_WIDTH);
         let height = HEADING + DIAGRAM + ABOVE_LEGEND + legend.height() + 2 * theme::MARGIN;
         svg(&format!("{}: {}", self.title, self.subtitle), [WIDTH, height], |canvas| {
             let inner = canvas.margin(theme::MARGIN, theme::MARGIN, theme::MARGIN, theme::MARGIN);
@@ -90,7 +100,10 @@ impl Diagram<'_> {
             .build_cartesian_2d(self.x.clone(), self.y.clone())?;
         self.draw_axes(&mut chart)?;
         for (index, curve) in self.curves.iter().enumerate() {
-            self.draw_curve(&mut chart, curve, Series::of(index))?;
+            match self.joined {
+                Joined::Line => self.draw_curve(&mut chart, curve, Series::of(index))?,
+                Joined::Dots => draw_dots(&mut chart, curve, Series::of(index))?,
+            }
         }
         Ok(())
     }
@@ -127,6 +140,13 @@ impl Diagram<'_> {
         }
         Ok(())
     }
+}
+
+/// Dots that let those beneath show through.
+fn draw_dots(chart: &mut Chart<'_, '_>, curve: &Curve, series: Series) -> DrawResult {
+    let dots = curve.points.iter().flatten().map(|&point| Circle::new(point, theme::DOT, series.faint_dot()));
+    chart.draw_series(dots)?;
+    Ok(())
 }
 
 fn draw_line(chart: &Chart<'_, '_>, points: Vec<(f64, f64)>, dash: Option<[u32; 2]>, style: ShapeStyle) -> DrawResult {

@@ -22,12 +22,13 @@ struct Entry {
     x: i32,
     /// None for the words about those that are left out.
     series: Option<Series>,
+    has_line: bool,
     name: String,
 }
 
 impl Legend {
-    /// As many names as can be told apart, and how many more there are.
-    pub(super) fn new<'a>(names: impl ExactSizeIterator<Item = &'a str>, width: u32) -> Legend {
+    /// As many names as can be told apart, and how many more there are; series of dots have no line.
+    pub(super) fn new<'a>(names: impl ExactSizeIterator<Item = &'a str>, has_line: bool, width: u32) -> Legend {
         let more = names.len().saturating_sub(theme::SERIES);
         let mut entries: Vec<(Option<Series>, String)> =
             names.take(theme::SERIES).enumerate().map(|(i, name)| (Some(Series::of(i)), name.to_owned())).collect();
@@ -45,7 +46,7 @@ impl Legend {
                 end = 0.0;
             }
             if let Some(row) = rows.last_mut() {
-                row.push(Entry { x: end as i32, series, name });
+                row.push(Entry { x: end as i32, series, has_line, name });
             }
             end += needed + BEHIND_NAME;
         }
@@ -71,6 +72,7 @@ impl Entry {
         if let Some(series) = self.series {
             let ends = [(x, middle), (x + SAMPLE, middle)];
             match series.dash {
+                _ if !self.has_line => {}
                 None => canvas.draw(&PathElement::new(ends, series.line()))?,
                 Some([dash, room]) => canvas.draw(&DashedPathElement::new(ends, dash, room, series.line()))?,
             }

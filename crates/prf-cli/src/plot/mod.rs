@@ -13,6 +13,7 @@ use crate::files::write_whole;
 
 pub(crate) mod axis;
 pub(crate) mod curve;
+pub(crate) mod heat;
 mod legend;
 pub(crate) mod text;
 pub(crate) mod theme;

@@ -13,6 +13,10 @@ pub(crate) const AXIS: RGBColor = RGBColor(140, 140, 140);
 /// The grid behind the data.
 pub(crate) const GRID: RGBColor = RGBColor(228, 228, 228);
 
+/// What is always wrong, and what is always right.
+pub(crate) const WRONG: RGBColor = RGBColor(213, 94, 0);
+pub(crate) const RIGHT: RGBColor = RGBColor(0, 114, 178);
+
 pub(crate) const TITLE: f64 = 38.0;
 pub(crate) const LABEL: f64 = 28.0;
 pub(crate) const SMALL: f64 = 26.0;
@@ -58,6 +62,11 @@ impl Series {
     /// For a curve of so many points that a thicker one would fill its area.
     pub(crate) fn fine_line(self) -> ShapeStyle {
         self.colour.stroke_width(2)
+    }
+
+    /// One of so many that they lie on each other.
+    pub(crate) fn faint_dot(self) -> ShapeStyle {
+        self.colour.mix(0.45).filled()
     }
 
     pub(crate) fn dot(self) -> ShapeStyle {

@@ -7,11 +7,11 @@ mod motion;
 mod params;
 mod window;
 
+pub(crate) use comparison::Comparison;
 pub use direct::DirectDescriptor;
 pub use explanation::Explanation;
 pub use motion::MotionDescriptor;
 pub use params::{DescriptorKind, DescriptorParams, Goal};
-pub(crate) use comparison::Comparison;
 pub(crate) use window::WindowFinder;
 pub use window::{WindowDescriptor, WindowParams};
 

@@ -148,7 +148,8 @@ pub(super) fn of_demonstrations(closeness: &[f64], starts: &[usize]) -> Vec<Figu
 
 pub(super) fn of_alterations(closeness: &[f64], probes: &[Probe]) -> Vec<Figure> {
     let falls = |alteration| {
-        let altered: Vec<_> = probes.iter().zip(closeness).filter(|(probe, _)| probe.alteration == alteration).collect();
+        let altered: Vec<_> =
+            probes.iter().zip(closeness).filter(|(probe, _)| probe.alteration == alteration).collect();
         let series = altered.chunk_by(|a, b| a.0.series == b.0.series).filter(|series| series.len() >= LEAST_FRAMES);
         mean(series.map(|series| {
             // The goal itself comes first: nothing is altered, and the distance is 0.
@@ -199,8 +200,14 @@ mod tests {
 
     #[test]
     fn scores_give_correlations_and_an_area() {
-        let labels =
-            [label(0.0, false), label(1.0, false), label(2.0, false), label(9.0, true), Label::default(), label(10.0, true)];
+        let labels = [
+            label(0.0, false),
+            label(1.0, false),
+            label(2.0, false),
+            label(9.0, true),
+            Label::default(),
+            label(10.0, true),
+        ];
         let figures = of_scores(&[-5.0, -6.0, -7.0, -2.0, 99.0, -1.0], &labels);
         let values: Vec<_> = figures.iter().map(|figure| (figure.kind, figure.value)).collect();
         // Ranks 0 1 2 3 4 against 2 1 0 3 4: 1 − 6·8/(5·24) = 0.6
@@ -244,7 +251,10 @@ mod tests {
         };
         assert_eq!(values(&[-1.0, -2.0, -3.0, -4.0]), (Some(1.0), Some(1.0)));
         let (falls, above) = values(&[-2.0, -2.5, -3.0, -2.2]);
-        assert!(falls == Some(1.0) && above.is_some_and(|area| (area - 1.0 / 3.0).abs() < 1e-12), "{falls:?} {above:?}");
+        assert!(
+            falls == Some(1.0) && above.is_some_and(|area| (area - 1.0 / 3.0).abs() < 1e-12),
+            "{falls:?} {above:?}"
+        );
         assert_eq!(values(&[0.0, 0.0, 0.0, 0.0]), (Some(0.0), Some(0.5)));
     }
 

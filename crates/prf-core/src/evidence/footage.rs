@@ -137,6 +137,12 @@ impl Footage {
         &self.kept.indices
     }
 
+    /// Places among the kept frames at which episodes or demonstrations begin.
+    #[must_use]
+    pub fn starts(&self) -> &[usize] {
+        &self.kept.starts
+    }
+
     /// What is known of each of the kept frames.
     #[must_use]
     pub fn labels(&self) -> &[Label] {

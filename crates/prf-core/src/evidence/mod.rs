@@ -157,9 +157,7 @@ impl Evidence<'_> {
 /// What finds `T_A` in a frame, where that is not the frame itself.
 fn finder(descriptor: &DescriptorParams, goal: &Goal) -> Result<Option<WindowFinder>, Error> {
     match descriptor {
-        DescriptorParams::Window(window) => {
-            Ok(Some(WindowFinder::new(&goal.picture, goal.mask.as_ref(), *window)?))
-        }
+        DescriptorParams::Window(window) => Ok(Some(WindowFinder::new(&goal.picture, goal.mask.as_ref(), *window)?)),
         DescriptorParams::Direct | DescriptorParams::Motion(_) => Ok(None),
     }
 }

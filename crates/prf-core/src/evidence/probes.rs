@@ -243,7 +243,7 @@ mod tests {
         let absent = of(&probes, Alteration::Absent);
         assert_eq!(absent.len(), 1);
         assert!(absent[0].frame.as_slice().iter().all(|&v| v != 220));
-        assert!(absent[0].frame.as_slice().iter().any(|&v| v == 120));
+        assert!(absent[0].frame.as_slice().contains(&120));
     }
 
     #[test]

@@ -45,7 +45,8 @@ mod tests {
         let mut goal = Frame::new(30, 30);
         (8..18).for_each(|y| goal.row_mut(y)[10..20].fill(255));
         goal.row_mut(25).fill(90);
-        let evidence = Evidence::of_goal(&DescriptorParams::Direct, &Goal::from(goal.clone())).expect("a thing");
+        let goal = Goal::from(goal);
+        let evidence = Evidence::of_goal(&DescriptorParams::Direct, &goal).expect("a thing");
         let settings = settings(&goal, RewardParams::default());
         let sweep = |threads| evidence.sweep(&settings, NonZero::new(threads).expect("above 0")).expect("they fit");
         let one = sweep(1);

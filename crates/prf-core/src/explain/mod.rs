@@ -8,8 +8,8 @@ mod ranking;
 use std::f32::consts::{PI, TAU};
 
 pub use canvas::Picture;
-pub use ranking::{Ranked, draw_ranking};
 use canvas::{BOX, GREY, INK, Panel, WINDOW};
+pub use ranking::{Ranked, draw_ranking};
 
 use crate::{Explanation, FrameView, Norm, Rect};
 

@@ -7,7 +7,7 @@ use prf_core::io::FrameInfo;
 
 use crate::error::Result;
 use crate::plot::axis::Axis;
-use crate::plot::curve::{Curve, Diagram};
+use crate::plot::curve::{Curve, Diagram, Joined};
 
 /// The rewards of every source, in order. Single pictures make one source together.
 #[derive(Default)]
@@ -88,6 +88,7 @@ impl Curves {
             x: if by_time { Axis::seconds(last) } else { Axis::frames(last) },
             y: Axis::rewards(rewards().fold(1.0, f64::min), rewards().fold(0.0, f64::max)),
             curves: &curves,
+            joined: Joined::Line,
         };
         diagram.svg()
     }
