@@ -1,7 +1,6 @@
 """What is timed: each case's work as someone who knows OpenCV or scikit-image would write it in Python.
 
-A job is made once, with all that can be prepared; `begin` forgets earlier pictures, `call` is the work and `output` is
-what the last call gave.
+A job is made once, with all that can be prepared; `call` is the work and `output` is what the last call gave.
 """
 
 import math
@@ -20,9 +19,6 @@ def hog_descriptor(width, height, cell, block_cells):
 
 
 class Job:
-    def begin(self, frames):
-        pass
-
     def call(self, frame):
         raise NotImplementedError
 
@@ -83,8 +79,9 @@ class Motion(Job):
         self.duration = params["delta"]["duration"]
         shape = frames["height"], frames["width"]
         self.silhouette, self.history = np.empty(shape, np.uint8), np.zeros(shape, np.float32)
+        self.reset()
 
-    def begin(self, frames):
+    def reset(self):
         self.history.fill(0)
         self.before, self.iterations, self.tau = None, 0, 0.0
 
@@ -168,14 +165,11 @@ class MotionReward(DirectReward):
 
     def __init__(self, case, picture):
         super().__init__(case, picture)
-        self.motion, self.episode = Motion(case, picture), case["frames"]["count"]
-
-    def begin(self, frames):
-        self.step = 0
+        self.motion, self.episode, self.step = Motion(case, picture), case["frames"]["count"], 0
 
     def call(self, frame):
         if self.step % self.episode == 0:
-            self.motion.begin(None)
+            self.motion.reset()
         self.step += 1
         self.motion.call(frame)
         scale = 255 / self.motion.tau if self.motion.tau > 0 else 0

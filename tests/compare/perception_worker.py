@@ -29,12 +29,43 @@ def main():
     gc.disable()  # as timeit does
     cases = {case["name"]: case for case in json.loads((folder / "cases.json").read_text())}
     say({"versions": versions()})
+    kept, running = None, None
     for line in sys.stdin:
         command, name, peer, argument = line.rstrip("\n").split(" ", 3)
-        case = cases[name]
-        frames = pictures(folder, case["frames"])
-        job = PEERS[peer, case["work"]](case, lambda key: pictures(folder, case[key])[0])
-        say(time_turns(job, frames, int(argument)) if command == "time" else write_result(job, frames, argument))
+        if command == "result":
+            say(Running(folder, cases[name], peer).write_result(argument))
+            continue
+        if kept != (name, peer):
+            kept, running = (name, peer), Running(folder, cases[name], peer)
+            running.turn()  # memory and caches are those of a long run
+        say(running.time_turns(int(argument)))
+
+
+class Running:
+    """A case with its pictures."""
+
+    def __init__(self, folder, case, peer):
+        self.frames = pictures(folder, case["frames"])
+        self.job = PEERS[peer, case["work"]](case, lambda key: pictures(folder, case[key])[0])
+
+    def turn(self):
+        for frame in self.frames:
+            self.job.call(frame)
+
+    def time_turns(self, turns):
+        start = time.perf_counter_ns()
+        for _ in range(turns):
+            self.turn()
+        return {"calls": turns * len(self.frames), "ns": time.perf_counter_ns() - start}
+
+    def write_result(self, file):
+        outputs = []
+        for frame in self.frames:
+            self.job.call(frame)
+            outputs.append(np.array(self.job.output(), np.float32).ravel())
+        values = np.concatenate(outputs)
+        values.astype("<f4").tofile(file)
+        return {"values": len(values)}
 
 
 def versions():
@@ -51,31 +82,6 @@ def pictures(folder, spec):
     """[count, height, width]"""
     pixels = np.fromfile(folder / spec["file"], np.uint8)
     return list(pixels.reshape(spec["count"], spec["height"], spec["width"]))
-
-
-def time_turns(job, frames, turns):
-    job.begin(frames)
-    turn(job, frames)  # memory and caches are those of a long run
-    start = time.perf_counter_ns()
-    for _ in range(turns):
-        turn(job, frames)
-    return {"calls": turns * len(frames), "ns": time.perf_counter_ns() - start}
-
-
-def turn(job, frames):
-    for frame in frames:
-        job.call(frame)
-
-
-def write_result(job, frames, file):
-    job.begin(frames)
-    outputs = []
-    for frame in frames:
-        job.call(frame)
-        outputs.append(np.array(job.output(), np.float32).ravel())
-    values = np.concatenate(outputs)
-    values.astype("<f4").tofile(file)
-    return {"values": len(values)}
 
 
 def say(answer):

@@ -24,7 +24,7 @@ pub use document::replace_section;
 pub use machine::cpu_model;
 pub use measure::{Samples, in_turns, turns_for};
 pub use pictures::{Pictures, breakout, motion_goal, texture};
-pub use statistics::{Ratio, median};
+pub use statistics::{Ratio, median, quantile};
 pub use table::{Row, missed, table};
 pub use worker::{Answer, parse_answer};
 

@@ -47,10 +47,10 @@ pub fn table(rows: &[Row]) -> String {
             group = row.group;
             let _ = writeln!(text, "{gap}### {group}\n\n{HEAD}");
         }
-        let Ratio { median, least, most } = row.ratio;
+        let Ratio { median, middle_half: [low, high], all: [least, most] } = row.ratio;
         let _ = writeln!(
             text,
-            "| {} | {} | {} | {} | **{median:.2}** | {least:.2} … {most:.2} | {} |",
+            "| {} | {} | {} | {} | **{median:.2}** | {low:.2} … {high:.2} | {least:.2} … {most:.2} | {} |",
             row.title,
             microseconds(row.ours_ns),
             row.peer,
@@ -61,8 +61,8 @@ pub fn table(rows: &[Row]) -> String {
     text
 }
 
-const HEAD: &str = "| Work | prf, µs | Peer | Peer, µs | Times faster | Worst … best round | Target |\n\
-                    |---|---|---|---|---|---|---|";
+const HEAD: &str = "| Work | prf, µs | Peer | Peer, µs | Times faster | Half of the rounds | All rounds | Target |\n\
+                    |---|---|---|---|---|---|---|---|";
 
 /// One sentence on the targets.
 pub fn missed(rows: &[Row]) -> String {

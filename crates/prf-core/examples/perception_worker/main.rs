@@ -25,53 +25,74 @@ fn main() -> Result<()> {
     let folder = Path::new(&folder);
     let cases: Vec<Case> = serde_json::from_str(&fs::read_to_string(folder.join("cases.json"))?)?;
     say(&json!({ "versions": { "prf-core": env!("CARGO_PKG_VERSION") } }))?;
+    let mut kept: Option<(String, Running)> = None;
     for line in io::stdin().lock().lines() {
-        say(&answer(folder, &cases, &line?)?)?;
+        let line = line?;
+        let words: Vec<&str> = line.splitn(4, ' ').collect();
+        let [command, name, _, argument] = words[..] else { return Err(format!("not understood: {line}").into()) };
+        let start = || Running::start(folder, &cases, name);
+        say(&match command {
+            "result" => start()?.write_result(argument)?,
+            _ => keep(&mut kept, name, start)?.time_turns(argument.parse()?)?,
+        })?;
     }
     Ok(())
 }
 
-fn answer(folder: &Path, cases: &[Case], line: &str) -> Result<Value> {
-    let words: Vec<&str> = line.splitn(4, ' ').collect();
-    let [command, name, _, argument] = words[..] else { return Err(format!("not understood: {line}").into()) };
-    let case = cases.iter().find(|case| case.name == name).ok_or_else(|| format!("no case {name}"))?;
-    let frames = case.frames.read(folder)?;
-    let mut job = job::make(case, folder)?;
-    match command {
-        "time" => time_turns(job.as_mut(), &frames, argument.parse()?),
-        "result" => write_result(job.as_mut(), &frames, argument),
-        _ => Err(format!("not understood: {line}").into()),
+/// The one that was asked for last, or a new one.
+fn keep<'a>(
+    kept: &'a mut Option<(String, Running)>,
+    name: &str,
+    start: impl FnOnce() -> Result<Running>,
+) -> Result<&'a mut Running> {
+    if kept.as_ref().is_none_or(|(last, _)| last != name) {
+        let mut running = start()?;
+        // So that memory and caches are those of a long run.
+        running.turn()?;
+        *kept = Some((name.to_owned(), running));
     }
+    Ok(kept.as_mut().map(|(_, running)| running).ok_or("nothing is kept")?)
 }
 
-fn time_turns(job: &mut dyn Job, frames: &[Frame], turns: usize) -> Result<Value> {
-    // Before, so that memory and caches are those of a long run.
-    turn(job, frames)?;
-    let start = Instant::now();
-    for _ in 0..turns {
-        turn(job, frames)?;
-    }
-    let nanoseconds = u64::try_from(start.elapsed().as_nanos())?;
-    Ok(json!({ "calls": turns * frames.len(), "ns": nanoseconds }))
+/// A case with its pictures.
+struct Running {
+    frames: Vec<Frame>,
+    job: Box<dyn Job>,
 }
 
-/// One call for each picture.
-fn turn(job: &mut dyn Job, frames: &[Frame]) -> Result<()> {
-    for frame in frames {
-        job.call(black_box(frame.view()))?;
+impl Running {
+    fn start(folder: &Path, cases: &[Case], name: &str) -> Result<Running> {
+        let case = cases.iter().find(|case| case.name == name).ok_or_else(|| format!("no case {name}"))?;
+        Ok(Running { frames: case.frames.read(folder)?, job: job::make(case, folder)? })
     }
-    Ok(())
-}
 
-fn write_result(job: &mut dyn Job, frames: &[Frame], file: &str) -> Result<Value> {
-    let mut values = Vec::new();
-    for frame in frames {
-        job.call(frame.view())?;
-        job.output(frame.view(), &mut values);
+    /// One call for each picture.
+    fn turn(&mut self) -> Result<()> {
+        for frame in &self.frames {
+            self.job.call(black_box(frame.view()))?;
+        }
+        Ok(())
     }
-    let bytes: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
-    fs::write(file, bytes)?;
-    Ok(json!({ "values": values.len() }))
+
+    fn time_turns(&mut self, turns: usize) -> Result<Value> {
+        let start = Instant::now();
+        for _ in 0..turns {
+            self.turn()?;
+        }
+        let nanoseconds = u64::try_from(start.elapsed().as_nanos())?;
+        Ok(json!({ "calls": turns * self.frames.len(), "ns": nanoseconds }))
+    }
+
+    fn write_result(&mut self, file: &str) -> Result<Value> {
+        let mut values = Vec::new();
+        for frame in &self.frames {
+            self.job.call(frame.view())?;
+            self.job.output(frame.view(), &mut values);
+        }
+        let bytes: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
+        fs::write(file, bytes)?;
+        Ok(json!({ "values": values.len() }))
+    }
 }
 
 fn say(answer: &Value) -> Result<()> {
