@@ -15,8 +15,7 @@ pub fn compare_values(check: Check, ours: &[f32], theirs: &[f32]) -> Result<()> 
     let differs = |(ours, theirs): (&f32, &f32)| match check {
         Check::Count => false,
         Check::Bits => ours.to_bits() != theirs.to_bits(),
-        // Written so that NaN differs from everything.
-        Check::Within(tolerance) => !((ours - theirs).abs() <= tolerance),
+        Check::Within(tolerance) => (ours - theirs).abs() > tolerance || ours.is_nan() || theirs.is_nan(),
     };
     match ours.iter().zip(theirs).position(differs) {
         Some(at) => bail!("value {at} is {} with us and {} there ({check:?})", ours[at], theirs[at]),

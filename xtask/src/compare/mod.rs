@@ -21,7 +21,7 @@ mod worker;
 pub use cases::{Case, Check, Peer, perception_cases};
 pub use check::compare_values;
 pub use document::replace_section;
-pub use machine::cpu_model;
+pub use machine::{cpu_model, widest_vectors};
 pub use measure::{Samples, in_turns, turns_for};
 pub use pictures::{Pictures, breakout, motion_goal, texture};
 pub use statistics::{Ratio, median, quantile};

@@ -53,12 +53,11 @@ pub(super) fn run(root: &Path) -> Result<()> {
 
 /// All that is written by this program: the machine, what was missed, and a table for each kind of work.
 fn section(versions: &BTreeMap<String, String>, rows: &[Row]) -> String {
-    let versions: Vec<String> = versions.iter().map(|(name, version)| format!("{name} {version}")).collect();
-    let (model, cores) = (machine::model(), machine::cores());
+    let versions = versions.iter().map(|(name, version)| format!("{name} {version}")).chain(machine::compiler());
     format!(
-        "Machine: {model}, {cores} cores, one thread each side. {}.\n\
-         {ROUNDS} rounds of about {} ms a side.\n\n{}\n\n{}",
-        versions.join(", "),
+        "Machine: {}; one thread each side. Versions: {}. {ROUNDS} rounds of about {} ms a side.\n\n{}\n\n{}",
+        machine::describe(),
+        versions.collect::<Vec<_>>().join(", "),
         BATCH_NS / 1e6,
         missed(rows),
         table(rows)

@@ -28,7 +28,7 @@ pub(super) fn prf(root: &Path) -> Result<Command> {
 /// The last program that cargo names in its messages.
 fn executable(messages: &str) -> Option<PathBuf> {
     let parsed = messages.lines().filter_map(|line| serde_json::from_str::<Value>(line).ok());
-    parsed.filter_map(|message| message["executable"].as_str().map(PathBuf::from)).last()
+    parsed.filter_map(|message| message["executable"].as_str().map(PathBuf::from)).next_back()
 }
 
 /// Fetches the peers, unless they are there.
@@ -45,7 +45,10 @@ pub(super) fn peers(root: &Path) -> Result<Command> {
         succeed(venv.make(&python), "the virtual environment can't be made")?;
         let mut pip = venv.pip_install();
         pip.args(["--only-binary=:all:", "--requirement"]).arg(&requirements);
-        succeed(pip, "pip can't fetch what tests/compare/requirements.txt names: check the network and pip's settings")?;
+        succeed(
+            pip,
+            "pip can't fetch what tests/compare/requirements.txt names: check the network and pip's settings",
+        )?;
         venv.mark_ready()?;
     }
     let mut worker = venv.python();
@@ -59,4 +62,18 @@ fn succeed(mut command: Command, complaint: &str) -> Result<()> {
     let status = command.status().with_context(|| complaint.to_owned())?;
     ensure!(status.success(), "{complaint} ({status})");
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_program_is_what_cargo_names_last() {
+        let messages = "{\"reason\":\"compiler-artifact\",\"executable\":null}\n\
+                        {\"reason\":\"compiler-artifact\",\"executable\":\"a/worker\"}\n\
+                        {\"reason\":\"build-finished\",\"success\":true}\n";
+        assert_eq!(executable(messages), Some(PathBuf::from("a/worker")));
+        assert_eq!(executable("not a message\n"), None);
+    }
 }
