@@ -5,8 +5,8 @@ use std::ffi::OsString;
 
 use anyhow::bail;
 use xtask::compare::{
-    Answer, Check, Pictures, Ratio, Row, Subject, breakout, compare_values, cpu_model, in_turns, median, missed,
-    motion_goal, parse_answer, perception_cases, quantile, replace_section, table, texture, turns_for, widest_vectors,
+    Answer, Check, Pictures, Plan, Ratio, Row, Subject, breakout, compare_values, cpu_model, in_turns, median, missed,
+    motion_goal, parse_answer, perception_cases, quantile, replace_section, table, texture, widest_vectors,
 };
 
 type TestResult = anyhow::Result<()>;
@@ -44,23 +44,25 @@ fn ratios_are_of_pairs_and_not_of_medians() {
 }
 
 #[test]
-fn batches_have_at_least_one_turn() {
-    assert_eq!(turns_for(1e6, 5e6), 5);
-    assert_eq!(turns_for(3e6, 5e6), 2);
-    assert_eq!(turns_for(1e9, 5e6), 1);
-    assert_eq!(turns_for(0.0, 5e6), 1_000_000);
+fn both_sides_work_equally_long() {
+    // In batches of 2 ms, 101 times.
+    assert_eq!(Plan::new([1e5, 1e6]), Plan { turns: [20, 2], rounds: 101 });
+    // As long as the longer turn: 40 ms, which fit 25 times into a second.
+    assert_eq!(Plan::new([4e7, 1e7]), Plan { turns: [1, 4], rounds: 25 });
+    assert_eq!(Plan::new([1e9, 3e8]), Plan { turns: [1, 3], rounds: 21 });
+    assert_eq!(Plan::new([0.0, 2e6]), Plan { turns: [1_000_000, 1], rounds: 101 });
 }
 
 #[test]
 fn sides_take_turns() -> TestResult {
     let mut asked = Vec::new();
-    let samples = in_turns(3, 2, |side| {
+    let samples = in_turns(2, |side| {
         asked.push(side);
         Ok((10 * side + asked.len()) as f64)
     })?;
-    assert_eq!(asked, [0, 1, 2, 0, 1, 2]);
-    assert_eq!(samples, [[1.0, 4.0], [12.0, 15.0], [23.0, 26.0]]);
-    assert!(in_turns(2, 3, |_| bail!("a worker died")).is_err());
+    assert_eq!(asked, [0, 1, 0, 1]);
+    assert_eq!(samples, [[1.0, 3.0], [12.0, 14.0]]);
+    assert!(in_turns(3, |_| bail!("a worker died")).is_err());
     Ok(())
 }
 
@@ -123,11 +125,12 @@ fn tables_have_a_heading_for_each_group() {
 }
 
 #[test]
-fn missed_targets_are_named() {
+fn missed_targets_are_counted() {
     let (met, free) = (row("HOG", "64×64", 3.0, Some(3.0)), row("HOG", "8×8", 0.5, None));
-    assert_eq!(missed(&[met.clone(), free.clone()]), "All 1 targets are met.");
-    let said = missed(&[met, free, row("Matching", "84×84", 1.4, Some(1.5))]);
-    assert_eq!(said, "**1 of 2 targets are missed**: Matching, 84×84.");
+    assert_eq!(missed(&[met.clone(), free.clone()]), "Targets met: HOG 1 of 1.");
+    let [slow, fast] = [1.4, 1.5].map(|median| row("Matching", "84×84", median, Some(1.5)));
+    let said = missed(&[met, free, slow.clone(), fast, slow]);
+    assert_eq!(said, "Targets met: HOG 1 of 1, Matching 1 of 3 (**2 missed**).");
 }
 
 #[test]

@@ -22,7 +22,7 @@ pub use cases::{Case, Check, Peer, perception_cases};
 pub use check::compare_values;
 pub use document::replace_section;
 pub use machine::{cpu_model, widest_vectors};
-pub use measure::{Samples, in_turns, turns_for};
+pub use measure::{Plan, in_turns};
 pub use pictures::{Pictures, breakout, motion_goal, texture};
 pub use statistics::{Ratio, median, quantile};
 pub use table::{Row, missed, table};

@@ -9,7 +9,7 @@ use anyhow::{Context, Result, ensure};
 use super::cases::{Case, Peer, perception_cases};
 use super::check::{compare_values, read_values};
 use super::document::replace_section;
-use super::measure::{Samples, in_turns, turns_for};
+use super::measure::{Plan, in_turns};
 use super::statistics::{Ratio, median};
 use super::table::{Row, missed, table};
 use super::worker::Worker;
@@ -17,11 +17,6 @@ use super::{machine, setup};
 use crate::venv::target;
 
 const DOCUMENT: &str = "docs/results/perception.md";
-/// How often each side is asked.
-const ROUNDS: usize = 101;
-/// What one answer should take: long enough for the clock, short enough that a process which has just woken up is
-/// seldom interrupted before its end.
-const BATCH_NS: f64 = 2e6;
 
 pub(super) fn run(root: &Path) -> Result<()> {
     let document = root.join(DOCUMENT);
@@ -55,10 +50,9 @@ pub(super) fn run(root: &Path) -> Result<()> {
 fn section(versions: &BTreeMap<String, String>, rows: &[Row]) -> String {
     let versions = versions.iter().map(|(name, version)| format!("{name} {version}")).chain(machine::compiler());
     format!(
-        "Machine: {}; one thread each side. Versions: {}. {ROUNDS} rounds of about {} ms a side.\n\n{}\n\n{}",
+        "Machine: {}; one thread each side. Versions: {}.\n\n{}\n\n{}",
         machine::describe(),
         versions.collect::<Vec<_>>().join(", "),
-        BATCH_NS / 1e6,
         missed(rows),
         table(rows)
     )
@@ -93,14 +87,23 @@ impl Sides {
 
     fn measure(&mut self, case: &Case) -> Result<Vec<Row>> {
         eprintln!("{}", case.name);
-        let mut names = vec!["prf"];
-        names.extend(case.peers.iter().map(|peer| peer.side));
-        let mut turns = Vec::new();
-        for name in &names {
-            turns.push(turns_for(self.ask(case, name, 1)?.0, BATCH_NS));
-        }
-        let samples = in_turns(names.len(), ROUNDS, |side| Ok(self.ask(case, names[side], turns[side])?.1))?;
-        Ok(rows(case, &samples))
+        case.peers.iter().map(|peer| self.measure_beside(case, peer)).collect()
+    }
+
+    fn measure_beside(&mut self, case: &Case, peer: &Peer) -> Result<Row> {
+        let names = ["prf", peer.side];
+        let first = [self.ask(case, names[0], 1)?.0, self.ask(case, names[1], 1)?.0];
+        let plan = Plan::new(first);
+        let [ours, theirs] = in_turns(plan.rounds, |side| Ok(self.ask(case, names[side], plan.turns[side])?.1))?;
+        Ok(Row {
+            group: case.group,
+            title: case.title.clone(),
+            peer: peer.title,
+            ours_ns: median(&ours),
+            theirs_ns: median(&theirs),
+            ratio: Ratio::of(&ours, &theirs),
+            target: peer.target,
+        })
     }
 
     /// Nanoseconds of a turn, and of a call.
@@ -110,18 +113,4 @@ impl Sides {
         ensure!(calls > 0, "the worker made no calls for {}", case.name);
         Ok((ns as f64 / turns as f64, ns as f64 / calls as f64))
     }
-}
-
-fn rows(case: &Case, samples: &Samples) -> Vec<Row> {
-    let (ours, peers) = (&samples[0], &samples[1..]);
-    let row = |(peer, theirs): (&Peer, &Vec<f64>)| Row {
-        group: case.group,
-        title: case.title.clone(),
-        peer: peer.title,
-        ours_ns: median(ours),
-        theirs_ns: median(theirs),
-        ratio: Ratio::of(ours, theirs),
-        target: peer.target,
-    };
-    case.peers.iter().zip(peers).map(row).collect()
 }

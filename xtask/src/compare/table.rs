@@ -64,15 +64,16 @@ pub fn table(rows: &[Row]) -> String {
 const HEAD: &str = "| Work | prf, µs | Peer | Peer, µs | Times faster | Half of the rounds | All rounds | Target |\n\
                     |---|---|---|---|---|---|---|---|";
 
-/// One sentence on the targets.
+/// For each group, how many targets are missed.
 pub fn missed(rows: &[Row]) -> String {
-    let with_target = rows.iter().filter(|row| row.target.is_some()).count();
-    let missed: Vec<String> =
-        rows.iter().filter(|row| row.misses()).map(|row| format!("{}, {}", row.group, row.title)).collect();
-    if missed.is_empty() {
-        return format!("All {with_target} targets are met.");
-    }
-    format!("**{} of {with_target} targets are missed**: {}.", missed.len(), missed.join("; "))
+    let groups = rows.chunk_by(|a, b| a.group == b.group).map(|rows| {
+        let targets = rows.iter().filter(|row| row.target.is_some()).count();
+        match rows.iter().filter(|row| row.misses()).count() {
+            0 => format!("{} {targets} of {targets}", rows[0].group),
+            missed => format!("{} {} of {targets} (**{missed} missed**)", rows[0].group, targets - missed),
+        }
+    });
+    format!("Targets met: {}.", groups.collect::<Vec<_>>().join(", "))
 }
 
 /// Three figures, as far as there are that many.
