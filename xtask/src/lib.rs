@@ -5,11 +5,13 @@ use std::env;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+pub mod compare;
 pub mod compiler;
 pub mod libtorch;
 pub mod prf;
 pub mod python;
 pub mod test;
+mod venv;
 
 /// The workspace's root.
 ///

@@ -6,12 +6,14 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use anyhow::Result;
+use xtask::compare::{self, Subject};
 use xtask::{libtorch, prf, root, test};
 
 const USAGE: &str = "\
-usage: cargo xtask setup      fetch libtorch, if it is not there yet
-       cargo xtask test       set everything up and run every test
-       cargo prf ARGS…        set libtorch up, build prf and run it with ARGS";
+usage: cargo xtask setup                   fetch libtorch, if it is not there yet
+       cargo xtask test                    set everything up and run every test
+       cargo xtask compare [perception]    time prf against OpenCV and scikit-image, and write it down
+       cargo prf ARGS…                     set libtorch up, build prf and run it with ARGS";
 
 /// Exit status of a command line that makes no sense.
 const MISUSE: u8 = 2;
@@ -35,15 +37,21 @@ fn run(command: Option<&str>, rest: &[OsString]) -> Result<ExitCode> {
         (Some("prf"), args) => prf::run(&root, args),
         (Some("setup"), []) => setup(&root),
         (Some("test"), []) => test::run(&root),
+        (Some("compare"), words) => match Subject::parse(words) {
+            Some(subject) => compare::run(&root, subject),
+            None => misuse(),
+        },
         (Some("help" | "--help" | "-h"), _) => {
             println!("{USAGE}");
             Ok(ExitCode::SUCCESS)
         }
-        _ => {
-            eprintln!("{USAGE}");
-            Ok(ExitCode::from(MISUSE))
-        }
+        _ => misuse(),
     }
+}
+
+fn misuse() -> Result<ExitCode> {
+    eprintln!("{USAGE}");
+    Ok(ExitCode::from(MISUSE))
 }
 
 fn setup(root: &Path) -> Result<ExitCode> {

@@ -1,4 +1,4 @@
-//! The `python3` that fetches libtorch and tests the wheel.
+//! The `python3` that fetches libtorch, tests the wheel and runs what we are compared with.
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -26,8 +26,8 @@ impl Python {
     pub fn find(path: &OsStr) -> Result<Python> {
         let Some(program) = find_in(path, "python3") else {
             bail!(
-                "there is no python3 on PATH, and it is needed to fetch libtorch and to test the \
-                 Python package: install Python 3.10 or newer with pip and venv"
+                "there is no python3 on PATH, and it is needed to fetch libtorch, to test the Python \
+                 package and to compare with OpenCV: install Python 3.10 or newer with pip and venv"
             );
         };
         let shown = program.display().to_string();

@@ -179,10 +179,48 @@ fn prf_gets_its_arguments_and_gives_its_exit_code() -> TestResult {
 #[test]
 fn an_unknown_command_is_misuse() -> TestResult {
     let bench = Bench::new()?;
-    for args in [&["tset"][..], &[], &["test", "extra"]] {
+    for args in [&["tset"][..], &[], &["test", "extra"], &["compare", "speed"], &["compare", "perception", "extra"]] {
         let ended = end(bench.command(args))?;
         assert_eq!(ended.code, Some(2));
         assert!(ended.stderr.starts_with("usage: cargo xtask"), "{}", ended.stderr);
     }
+    Ok(())
+}
+
+/// Runs a comparison, which must fail before it measures anything, and returns why.
+fn no_comparison(bench: &Bench) -> Result<String, Box<dyn Error>> {
+    let ended = end(bench.command(&["compare"]))?;
+    assert_eq!(ended.code, Some(1));
+    assert_eq!(ended.stdout, "");
+    assert_eq!(ended.stderr.lines().count(), 1, "{}", ended.stderr);
+    Ok(ended.stderr)
+}
+
+#[test]
+fn a_comparison_wants_a_document_to_write_to() -> TestResult {
+    let bench = Bench::new()?;
+    let said = no_comparison(&bench)?;
+    assert!(said.starts_with("error: can't read docs/results/perception.md"), "{said}");
+    fs::create_dir_all(bench.at("docs/results"))?;
+    fs::write(bench.at("docs/results/perception.md"), "no place for tables")?;
+    let said = no_comparison(&bench)?;
+    assert!(said.contains("it has no line `<!-- begin"), "{said}");
+    Ok(())
+}
+
+#[test]
+fn a_comparison_wants_a_python() -> TestResult {
+    let bench = Bench::new()?;
+    fs::create_dir_all(bench.at("docs/results"))?;
+    let document = "<!-- begin: written by cargo xtask compare -->old<!-- end -->";
+    fs::write(bench.at("docs/results/perception.md"), document)?;
+    let said = no_comparison(&bench)?;
+    assert!(said.starts_with("error: there is no python3 on PATH"), "{said}");
+    fs::create_dir_all(bench.at("tests/compare"))?;
+    fs::write(bench.at("tests/compare/requirements.txt"), "toy==1.0")?;
+    bench.has("python3", "python3-bare")?;
+    let said = no_comparison(&bench)?;
+    assert!(said.contains("can't make virtual environments"), "{said}");
+    assert_eq!(fs::read_to_string(bench.at("docs/results/perception.md"))?, document);
     Ok(())
 }

@@ -1,14 +1,15 @@
 //! The Python package: installed into a virtual environment of its own and tested there.
 
+use std::env;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::{env, fs};
 
 use anyhow::{Context, Result, ensure};
 
 use super::Runner;
 use crate::python::Python;
+use crate::venv::{Venv, target};
 
 /// Installs the package as a user would and runs its tests. The environment is kept for the next
 /// time, when nothing need be fetched.
@@ -18,19 +19,17 @@ pub(super) fn test(root: &Path, runner: &mut Runner<'_>) -> Result<()> {
     let python = Python::find(&env::var_os("PATH").unwrap_or_default())?;
     let venv = Venv::new(target(root).join("venv"), &python, &requirements)?;
     if venv.is_ready() {
-        let mut pip = venv.pip_install()?;
+        let mut pip = pip_install(&venv)?;
         pip.args(["--no-build-isolation", "--no-deps", "--force-reinstall"]);
         pip.arg(&package);
         runner.run(pip)?;
     } else {
         python.require_venv()?;
-        let mut make = python.command();
-        make.args(["-m", "venv", "--clear"]).arg(&venv.folder);
-        runner.run(make)?;
-        let mut pip = venv.pip_install()?;
+        runner.run(venv.make(&python))?;
+        let mut pip = pip_install(&venv)?;
         pip.arg("--requirement").arg(&requirements);
         runner.run(pip)?;
-        let mut pip = venv.pip_install()?;
+        let mut pip = pip_install(&venv)?;
         pip.arg(format!("{}[test]", package.display()));
         runner.run(pip)?;
         venv.mark_ready()?;
@@ -60,55 +59,19 @@ pub(super) fn ffmpeg(root: &Path) -> Result<PathBuf> {
     Ok(folder)
 }
 
-/// A virtual environment that knows what it was made for.
-struct Venv {
-    folder: PathBuf,
-    stamp: String,
-}
-
-impl Venv {
-    fn new(folder: PathBuf, python: &Python, requirements: &Path) -> Result<Venv> {
-        let wanted =
-            fs::read_to_string(requirements).with_context(|| format!("can't read {}", requirements.display()))?;
-        let (major, minor) = python.version();
-        let stamp = format!("Python {major}.{minor}\n{wanted}");
-        Ok(Venv { folder, stamp })
-    }
-
-    fn is_ready(&self) -> bool {
-        fs::read_to_string(self.stamp_file()).is_ok_and(|stamp| stamp == self.stamp)
-    }
-
-    fn mark_ready(&self) -> Result<()> {
-        Ok(fs::write(self.stamp_file(), &self.stamp)?)
-    }
-
-    fn stamp_file(&self) -> PathBuf {
-        self.folder.join("prf-stamp")
-    }
-
-    fn python(&self) -> Command {
-        Command::new(self.folder.join("bin/python"))
-    }
-
-    fn pip_install(&self) -> Result<Command> {
-        let mut command = self.python();
-        command
-            .args(["-m", "pip", "install", "--disable-pip-version-check"])
-            // maturin is found there when pip does not fetch one of its own.
-            .env("PATH", with_first(&self.folder.join("bin"))?)
-            // With checks on, like the other tests, and sharing what is built already.
-            .env("MATURIN_PEP517_ARGS", "--profile=dev");
-        Ok(command)
-    }
+/// pip, for what has to be built.
+fn pip_install(venv: &Venv) -> Result<Command> {
+    let mut command = venv.pip_install();
+    command
+        // maturin is found there when pip does not fetch one of its own.
+        .env("PATH", with_first(&venv.folder().join("bin"))?)
+        // With checks on, like the other tests, and sharing what is built already.
+        .env("MATURIN_PEP517_ARGS", "--profile=dev");
+    Ok(command)
 }
 
 pub(super) fn with_first(folder: &Path) -> Result<OsString> {
     let path = env::var_os("PATH").unwrap_or_default();
     let folders = std::iter::once(folder.to_path_buf()).chain(env::split_paths(&path));
     Ok(env::join_paths(folders)?)
-}
-
-fn target(root: &Path) -> PathBuf {
-    env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), |dir| root.join(dir))
 }
