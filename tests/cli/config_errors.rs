@@ -8,6 +8,7 @@ use predicates::prelude::*;
 use predicates::str::{contains, is_empty, starts_with};
 use tempfile::TempDir;
 
+mod broken;
 mod common;
 mod pictures;
 
@@ -146,7 +147,7 @@ fn a_goal_that_is_not_there_is_misuse() {
 #[test]
 fn a_goal_that_is_broken_is_a_failure() {
     let folder = folder();
-    for (goal, told) in pictures::broken(folder.path()) {
+    for (goal, told) in broken::files(folder.path()) {
         dry_run(folder.path(), "goal.png", goal, &[])
             .code(1)
             .stdout(is_empty())

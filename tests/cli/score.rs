@@ -11,6 +11,7 @@ use predicates::str::{contains, is_empty, starts_with};
 use serde_json::Value;
 use tempfile::TempDir;
 
+mod broken;
 mod common;
 mod pictures;
 mod score_plot;
@@ -179,7 +180,7 @@ fn both_kinds_of_cell_are_misuse() {
 #[test]
 fn a_bad_goal_fails_and_says_why() {
     let folder = folder();
-    let mut cases = pictures::broken(folder.path());
+    let mut cases = broken::files(folder.path());
     cases.push(("missing.png", "no such file"));
     for (goal, told) in cases {
         prf(folder.path())
@@ -194,7 +195,7 @@ fn a_bad_goal_fails_and_says_why() {
 #[test]
 fn bad_frames_among_good_ones_are_a_loss() {
     let folder = folder();
-    let mut cases = pictures::broken(folder.path());
+    let mut cases = broken::files(folder.path());
     cases.push(("missing.png", "no such file"));
     for (frame, told) in cases {
         prf(folder.path())

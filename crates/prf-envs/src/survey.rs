@@ -119,6 +119,12 @@ impl Player for Clumsy {
 
 #[cfg(test)]
 mod tests {
+    use std::num::NonZero;
+
+    use prf_core::{
+        CellSize, DescriptorParams, FigureKind, Goal, HogParams, Norm, RewardParams, Verdict, recommend, settings,
+    };
+
     use super::*;
 
     fn scored(score: f32) -> Label {
@@ -146,6 +152,25 @@ mod tests {
         let (a, b, other) = (surveyed(1, 60), surveyed(1, 60), surveyed(2, 60));
         assert!(a.frames() == b.frames() && a.labels() == b.labels());
         assert!(a.frames() != other.frames());
+    }
+
+    /// The marked row of the table in docs/reward.md.
+    #[test]
+    fn breakouts_settings_are_found_from_the_usual_ones_of_the_papers_year() {
+        let footage = surveyed(1, 1000);
+        let goal = Goal::from(Frame::new(84, 84));
+        let hog = HogParams { norm: Norm::L1, block_cells: 3, cell: CellSize::Px(8), ..HogParams::default() };
+        let params = RewardParams { hog, ..RewardParams::default() };
+        let evidence = footage.scored(&DescriptorParams::Direct, &goal).expect("scores differ");
+        let judged = evidence.sweep(&settings(&goal, params), NonZero::<usize>::MIN).expect("settings fit");
+        assert_ne!(judged[0].verdict, Verdict::Good, "{:?}", judged[0]);
+        let best = recommend(&judged).expect("there is a good one");
+        assert_eq!((best.params.hog.norm, best.params.hog.block_cells, best.cell_px), (Norm::L2, 1, 2));
+        assert!(
+            best.figure(FigureKind::Rank) > Some(0.95) && best.figure(FigureKind::EarlyRank) > Some(0.85),
+            "{best:?}"
+        );
+        assert_eq!(best.verdict, Verdict::Good);
     }
 
     #[test]
