@@ -4,9 +4,9 @@ use crate::crop::crop_box_of;
 use crate::{DescriptorKind, DirectDescriptor, Error, Frame, Goal, HogLayout, RewardParams, TaskDescriptor};
 
 /// Rewards below this are next to nothing.
-const NEXT_TO_NOTHING: f32 = 1e-6;
+pub(crate) const NEXT_TO_NOTHING: f32 = 1e-6;
 /// Rewards above this are next to that of the goal itself.
-const NEXT_TO_ONE: f32 = 0.99;
+pub(crate) const NEXT_TO_ONE: f32 = 0.99;
 
 /// Why a goal is probably not what its maker meant.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -63,10 +63,19 @@ pub(crate) fn figures(judgement: &Judgement) -> Vec<String> {
     judgement.figures.iter().map(line).collect()
 }
 
-/// How the rewards spread.
-pub(crate) fn rewards(Rewards { least, low, median, high, largest }: Rewards) -> String {
+/// How the rewards spread, and how many are saturated.
+pub(crate) fn rewards(rewards: Rewards) -> String {
+    let Rewards { least, low, median, high, largest, next_to_one, next_to_nothing } = rewards;
     let [least, low, median, high, largest] = [least, low, median, high, largest].map(short);
-    format!("{least} at least, {low} to {high} for eight tenths, {median} in the middle, {largest} at most")
+    let saturated: Vec<String> = [(next_to_one, "above 0.99"), (next_to_nothing, "below 1e-6")]
+        .iter()
+        .filter(|(share, _)| *share > 0.0)
+        .map(|(share, words)| format!("; {:.1} % {words}", 100.0 * share))
+        .collect();
+    format!(
+        "{least} at least, {low} to {high} for eight tenths, {median} in the middle, {largest} at most{}",
+        saturated.concat()
+    )
 }
 
 /// Three decimals, or the first digits of a very small number.
@@ -148,11 +157,13 @@ struct Spread {
     median: f32,
     high: f32,
     largest: f32,
+    next_to_one: f32,
+    next_to_nothing: f32,
 }
 
 impl Record {
     pub(crate) fn new(known: &Known, frames: usize, window: Option<Rect>, judgement: &Judgement) -> Record {
-        let Rewards { least, low, median, high, largest } = judgement.rewards;
+        let Rewards { least, low, median, high, largest, next_to_one, next_to_nothing } = judgement.rewards;
         let value = |figure: &Figure| (figure.kind.key().to_owned(), Value::from(figure.value));
         Record {
             evidence: match known.kind {
@@ -168,7 +179,7 @@ impl Record {
             figures: judgement.figures.iter().map(value).collect(),
             quality: judgement.quality,
             verdict: verdict_name(judgement.verdict),
-            reward: Spread { least, low, median, high, largest },
+            reward: Spread { least, low, median, high, largest, next_to_one, next_to_nothing },
             recommended: None,
         }
     }

@@ -1,10 +1,9 @@
 //! What the figures of a reward's settings come to.
 
 use super::{Figure, FigureKind};
+use crate::goal_check::{NEXT_TO_NOTHING, NEXT_TO_ONE};
 use crate::{FrameView, HogLayout, RewardParams, crop_box};
 
-/// Rewards of which none is above this are next to nothing.
-const NEXT_TO_NOTHING: f32 = 1e-6;
 /// Rewards that spread by less than this tell no two frames apart.
 const LEAST_SPREAD: f32 = 0.01;
 /// Where most rewards spread by less, an agent sees little of their order.
@@ -40,6 +39,10 @@ pub struct Rewards {
     pub high: f32,
     /// The largest.
     pub largest: f32,
+    /// The share above 0.99, next to that of the goal itself, in [0, 1].
+    pub next_to_one: f32,
+    /// The share below 1e-6, too little to learn from, in [0, 1].
+    pub next_to_nothing: f32,
 }
 
 impl Rewards {
@@ -47,7 +50,18 @@ impl Rewards {
         let mut rewards: Vec<f32> = distances.iter().map(|distance| (-distance).exp()).collect();
         rewards.sort_by(f32::total_cmp);
         let at = |part: f32| rewards[((rewards.len() - 1) as f32 * part).round() as usize];
-        Rewards { least: at(0.0), low: at(0.1), median: at(0.5), high: at(0.9), largest: at(1.0) }
+        let share = |is_such: &dyn Fn(f32) -> bool| {
+            rewards.iter().filter(|&&reward| is_such(reward)).count() as f32 / rewards.len() as f32
+        };
+        Rewards {
+            least: at(0.0),
+            low: at(0.1),
+            median: at(0.5),
+            high: at(0.9),
+            largest: at(1.0),
+            next_to_one: share(&|reward| reward > NEXT_TO_ONE),
+            next_to_nothing: share(&|reward| reward < NEXT_TO_NOTHING),
+        }
     }
 
     /// How far the middle eight tenths lie apart.
@@ -139,8 +153,9 @@ mod tests {
     fn rewards_are_told_by_their_tenths() {
         let judgement = judged(0.9, 10.0);
         let expected = [10.0f32, 9.0, 5.0, 1.0, 0.0].map(|distance| (-distance).exp());
-        let Rewards { least, low, median, high, largest } = judgement.rewards;
+        let Rewards { least, low, median, high, largest, next_to_one, next_to_nothing } = judgement.rewards;
         assert_eq!([least, low, median, high, largest], expected);
+        assert_eq!((next_to_one, next_to_nothing), (1.0 / 11.0, 0.0));
         assert_eq!(judgement.cell_px, 1);
     }
 
@@ -155,6 +170,7 @@ mod tests {
         let figures = vec![Figure { kind: FigureKind::Rank, value: Some(1.0) }];
         let lost = Judgement::new(RewardParams::default(), Frame::new(9, 9).view(), figures, &far);
         assert_eq!(lost.verdict, Verdict::Blind, "1e-13 and less");
+        assert_eq!(lost.rewards.next_to_nothing, 1.0);
         let undecided = Judgement::new(RewardParams::default(), Frame::new(9, 9).view(), Vec::new(), &[0.0, 1.0]);
         assert_eq!((undecided.verdict, undecided.quality), (Verdict::Weak, 0.0));
     }
