@@ -15,11 +15,12 @@ A reward is judged by what is known of frames, whichever there is:
   --demo         each source of frames is a demonstration that ends at the goal
   the goal alone its things are displaced, taken away, scaled and covered, and noise is added: a good reward falls steadily
                  with displacement, and gives less for an absent thing than for a displaced one
-docs/reward.md explains the figures. Frames that cannot be read are named on stderr and left out: exit code 3.";
+docs/tuning.md explains the figures. Frames that cannot be read are named on stderr and left out: exit code 3.";
 
 #[derive(Debug, Args)]
 pub(crate) struct EvidenceArgs {
     /// A config (ending in .toml) with a perceptual reward, or a goal as for `prf score`
+    #[arg(value_name = "CONFIG|GOAL")]
     pub(crate) subject: PathBuf,
     /// Frames to judge by: pictures, folders of them, animations, videos
     #[arg(value_name = "FRAME")]
