@@ -48,7 +48,6 @@ mod error;
 mod explain;
 mod frame;
 mod goal_check;
-mod gradient;
 mod hog;
 #[cfg(feature = "io")]
 pub mod io;

@@ -1,17 +1,25 @@
 //! Histograms of oriented gradients (Dalal and Triggs, 2005), as scikit-image defines them.
 
 mod bins;
+mod blocks;
+mod cells;
 mod layout;
 mod normalize;
 mod params;
+mod strip;
+mod votes;
 
 pub use layout::HogLayout;
 pub use params::{CellSize, HogParams, Norm};
 
-use bins::{Bins, Votes};
+use bins::Bins;
+use cells::Cells;
+use normalize::{LANES, Lanes};
+use strip::Strip;
+use votes::Columns;
 
-use crate::gradient;
 use crate::region::{Region, Sample};
+use crate::simd::{Kernel, Simd};
 use crate::{Error, FrameView, PlaneView};
 
 /// Computes HOGs and keeps its working memory, so that after the first picture of a size nothing is
@@ -36,11 +44,20 @@ use crate::{Error, FrameView, PlaneView};
 /// ```
 #[derive(Clone, Debug)]
 pub struct Hog {
+    simd: Simd,
     params: HogParams,
     bins: Bins,
-    votes: Votes,
-    /// One histogram a cell, row by row.
-    histograms: Vec<f32>,
+    memory: Memory,
+}
+
+/// What is worked on, kept from picture to picture.
+#[derive(Clone, Debug, Default)]
+struct Memory {
+    strip: Strip,
+    columns: Columns,
+    cells: Cells,
+    /// The features of some blocks.
+    blocks: Vec<Lanes>,
 }
 
 impl Hog {
@@ -51,12 +68,8 @@ impl Hog {
     /// [`Error::InvalidParam`] as [`HogParams::validate`].
     pub fn new(params: HogParams) -> Result<Hog, Error> {
         params.validate()?;
-        Ok(Hog {
-            params,
-            bins: Bins::new(params.orientations, params.signed),
-            votes: Votes::default(),
-            histograms: Vec::new(),
-        })
+        let bins = Bins::new(params.orientations, params.signed);
+        Ok(Hog { simd: Simd::detect(), params, bins, memory: Memory::default() })
     }
 
     /// The parameters it was made with.
@@ -92,56 +105,61 @@ impl Hog {
     /// The HOG of an image whose shape and orientations are those of `layout`.
     pub(crate) fn compute<P: Sample>(&mut self, layout: &HogLayout, image: Region<'_, P>, out: &mut Vec<f32>) {
         debug_assert_eq!(layout.shape(), image.shape());
-        self.fill_histograms(layout, image);
-        self.collect_blocks(layout, out);
-    }
-
-    fn fill_histograms<P: Sample>(&mut self, layout: &HogLayout, image: Region<'_, P>) {
-        let ([rows, columns], cell_px) = (layout.cells(), layout.cell_px());
-        let orientations = layout.orientations();
-        self.histograms.clear();
-        self.histograms.resize(rows * columns * orientations, 0.0);
-        self.votes.resize(columns, cell_px, orientations);
-        let cell_rows = self.histograms.chunks_exact_mut(columns * orientations);
-        for (cell_row, histograms) in cell_rows.enumerate() {
-            for y in cell_row * cell_px..(cell_row + 1) * cell_px {
-                gradient::row(image, y, &mut self.votes.dx, &mut self.votes.dy);
-                self.bins.assign(&mut self.votes);
-                cast(&self.votes, histograms);
-            }
-            // Cell sums become means, and bytes become fractions of 255.
-            let unit = 1.0 / (P::WHITE * (cell_px * cell_px) as f32);
-            histograms.iter_mut().for_each(|v| *v *= unit);
-        }
-    }
-
-    fn collect_blocks(&self, layout: &HogLayout, out: &mut Vec<f32>) {
-        let [block_rows, block_columns] = layout.blocks();
-        let (orientations, block_cells) = (layout.orientations(), layout.block_cells());
-        let stride = layout.cells()[1] * orientations;
-        out.clear();
-        out.reserve(layout.len());
-        if block_cells == 1 {
-            out.extend_from_slice(&self.histograms);
-        } else {
-            for (y, x) in (0..block_rows).flat_map(|y| (0..block_columns).map(move |x| (y, x))) {
-                for row in y..y + block_cells {
-                    let left = row * stride + x * orientations;
-                    out.extend_from_slice(&self.histograms[left..][..block_cells * orientations]);
-                }
-            }
-        }
-        self.params.norm.apply(out, layout.block_len());
+        self.memory.fit(layout);
+        out.resize(layout.len(), 0.0);
+        let (bins, norm, memory) = (&self.bins, self.params.norm, &mut self.memory);
+        self.simd.run(Compute { layout, image, bins, norm, memory, out });
     }
 }
 
-/// Adds the votes of one row of pixels to the histograms of its row of cells.
-fn cast(votes: &Votes, histograms: &mut [f32]) {
-    for (&weight, &place) in votes.weight.iter().zip(&votes.place) {
-        // Much of a picture is flat; adding nothing would still wait for the sum before it.
-        if weight > 0.0 {
-            histograms[place as usize] += weight;
+impl Memory {
+    fn fit(&mut self, layout: &HogLayout) {
+        let ([rows, columns], cell_px) = (layout.cells(), layout.cell_px());
+        let orientations = layout.orientations();
+        let room = (columns * cell_px).next_multiple_of(votes::LANES);
+        self.strip.reserve(strip_rows(cell_px), layout.shape()[1], room);
+        self.columns.resize(columns * cell_px, orientations);
+        self.cells.resize([rows, columns], cell_px, orientations);
+        self.blocks.resize(layout.block_len(), [0.0; LANES]);
+    }
+}
+
+/// How many rows of pixels are made floats at a time. Small enough for the cache next to the processor; large enough that
+/// the two rows at its border, which are read twice, hardly count.
+fn strip_rows(cell_px: usize) -> usize {
+    16usize.next_multiple_of(cell_px)
+}
+
+/// Writes the HOG of `image` to `out`, which has its length.
+struct Compute<'a, P> {
+    layout: &'a HogLayout,
+    image: Region<'a, P>,
+    bins: &'a Bins,
+    norm: Norm,
+    memory: &'a mut Memory,
+    out: &'a mut [f32],
+}
+
+impl<P: Sample> Kernel for Compute<'_, P> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Memory { strip, columns, cells, blocks } = self.memory;
+        let (rows, cell_px) = (self.layout.cells()[0], self.layout.cell_px());
+        // Cell sums become means, and bytes become fractions of 255.
+        let unit = 1.0 / (P::WHITE * (cell_px * cell_px) as f32);
+        let at_a_time = strip_rows(cell_px) / cell_px;
+        for row in 0..rows {
+            let y = row % at_a_time * cell_px;
+            if y == 0 {
+                let count = at_a_time.min(rows - row);
+                strip.fill(self.image, row * cell_px, count * cell_px);
+            }
+            columns.sum(strip, y..y + cell_px, self.bins);
+            cells.fill_row(row, columns.bins_mut(), cell_px, unit);
         }
+        blocks::collect(cells, self.layout, self.norm, blocks, self.out);
     }
 }
 
@@ -156,11 +174,12 @@ mod tests {
         let mut pixels = [0; 9];
         (pixels[1], pixels[3], pixels[5], pixels[7]) = (above, left, right, below);
         let image = FrameView::new(3, 3, &pixels).expect("3 x 3 pixels");
-        let mut votes = Votes::default();
-        votes.resize(1, 3, orientations);
-        gradient::row(image.region(), 1, &mut votes.dx, &mut votes.dy);
-        Bins::new(orientations, signed).assign(&mut votes);
-        votes.place[1] as usize
+        let params =
+            HogParams { orientations, signed, cell: CellSize::Px(1), norm: Norm::None, ..HogParams::default() };
+        let mut features = Vec::new();
+        Hog::new(params).expect("valid").compute_bytes_into(image, &mut features).expect("a cell fits");
+        let centre = &features[4 * orientations..5 * orientations];
+        centre.iter().position(|&v| v > 0.0).expect("a gradient")
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! Normalisation of blocks, in place.
+//! Normalisation of blocks, several side by side.
 
 use super::Norm;
 
@@ -6,47 +6,70 @@ use super::Norm;
 const EPSILON: f32 = 1e-5;
 /// Where L2-Hys cuts off.
 const CLIP: f32 = 0.2;
+/// Blocks that are normalised at a time, each on its own lane.
+pub(super) const LANES: usize = 8;
+
+/// One feature of each block.
+pub(super) type Lanes = [f32; LANES];
 
 impl Norm {
-    /// Normalises features, block by block.
-    pub(super) fn apply(self, features: &mut [f32], block_len: usize) {
+    /// Normalises blocks of these features.
+    #[inline(always)]
+    pub(super) fn apply(self, features: &mut [Lanes]) {
         match self {
             Norm::None => {}
-            Norm::L1 => each(features, block_len, |block| scale(block, l1(block))),
-            Norm::L1Sqrt => each(features, block_len, |block| {
-                scale(block, l1(block));
-                block.iter_mut().for_each(|v| *v = v.sqrt());
-            }),
-            Norm::L2 => each(features, block_len, |block| scale(block, l2(block))),
-            Norm::L2Hys => each(features, block_len, |block| {
-                scale(block, l2(block));
-                block.iter_mut().for_each(|v| *v = v.min(CLIP));
-                scale(block, l2(block));
-            }),
+            Norm::L1 => scale(features, l1(features)),
+            Norm::L1Sqrt => {
+                scale(features, l1(features));
+                each(features, f32::sqrt);
+            }
+            Norm::L2 => scale(features, l2(features)),
+            Norm::L2Hys => {
+                scale(features, l2(features));
+                each(features, |v| if v < CLIP { v } else { CLIP });
+                scale(features, l2(features));
+            }
         }
     }
 }
 
-fn each(features: &mut [f32], block_len: usize, normalize: impl Fn(&mut [f32])) {
-    // One cell of 9 orientations is the most usual block, and the one that there are the most of:
-    // with its length known, its loops are unrolled.
-    if let (9, (blocks, [])) = (block_len, features.as_chunks_mut::<9>()) {
-        blocks.iter_mut().for_each(|block| normalize(block));
-    } else {
-        features.chunks_exact_mut(block_len).for_each(normalize);
-    }
-}
-
 /// `1 / (‖v‖₁ + ε)`; histograms are never negative.
-fn l1(block: &[f32]) -> f32 {
-    1.0 / (block.iter().sum::<f32>() + EPSILON)
+#[inline(always)]
+fn l1(features: &[Lanes]) -> Lanes {
+    sums(features, |v| v).map(|sum| 1.0 / (sum + EPSILON))
 }
 
 /// `1 / √(‖v‖₂² + ε²)`
-fn l2(block: &[f32]) -> f32 {
-    1.0 / (block.iter().map(|v| v * v).sum::<f32>() + EPSILON * EPSILON).sqrt()
+#[inline(always)]
+fn l2(features: &[Lanes]) -> Lanes {
+    sums(features, |v| v * v).map(|sum| 1.0 / (sum + EPSILON * EPSILON).sqrt())
 }
 
-fn scale(block: &mut [f32], factor: f32) {
-    block.iter_mut().for_each(|v| *v *= factor);
+#[inline(always)]
+fn sums(features: &[Lanes], term: impl Fn(f32) -> f32) -> Lanes {
+    let mut sums = [0.0; LANES];
+    for feature in features {
+        for lane in 0..LANES {
+            sums[lane] += term(feature[lane]);
+        }
+    }
+    sums
+}
+
+#[inline(always)]
+fn scale(features: &mut [Lanes], factors: Lanes) {
+    for feature in features {
+        for lane in 0..LANES {
+            feature[lane] *= factors[lane];
+        }
+    }
+}
+
+#[inline(always)]
+fn each(features: &mut [Lanes], change: impl Fn(f32) -> f32) {
+    for feature in features {
+        for lane in feature {
+            *lane = change(*lane);
+        }
+    }
 }
