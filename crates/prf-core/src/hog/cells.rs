@@ -1,87 +1,134 @@
 //! From columns of pixels to cells.
 
-use super::normalize::LANES;
+use std::ops::Range;
 
-/// The histograms of all cells. Those of a row of cells lie together, and among them the same bin of all cells.
+use super::bins::Bins;
+use super::lanes::{Lanes, WIDTH};
+use super::strip::Strip;
+use super::votes::Votes;
+
+/// Cells that are written at a time where there are not more.
+const FEW: usize = 16;
+
+/// The histograms of all cells: of each bin in turn all cells, row by row.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Cells {
-    orientations: usize,
     columns: usize,
+    /// From one bin to the next.
     stride: usize,
     values: Vec<f32>,
-    spare: Vec<f32>,
+    fold: Fold,
 }
 
 impl Cells {
     /// Prepares for so many rows and columns of cells.
     pub(super) fn resize(&mut self, [rows, columns]: [usize; 2], cell_px: usize, orientations: usize) {
-        // Blocks are read some at a time, so the last of them need not be there.
-        (self.orientations, self.columns, self.stride) = (orientations, columns, columns + LANES);
-        self.values.resize(rows * orientations * self.stride, 0.0);
-        self.spare.resize(columns * cell_px, 0.0);
+        self.columns = columns;
+        // Cells are written and read some at a time, also where there are fewer left.
+        self.stride = rows * columns + WIDTH;
+        self.values.resize(orientations * self.stride, 0.0);
+        self.fold = Fold::new(cell_px);
     }
 
-    /// Bin `bin` of the cells in this row, from this column on; as many as are read at a time.
+    /// A bin of some cells that follow each other, also from one row to the next.
     #[inline(always)]
-    pub(super) fn at(&self, row: usize, column: usize, bin: usize) -> Option<&[f32; LANES]> {
-        self.values[(row * self.orientations + bin) * self.stride + column..].first_chunk()
+    pub(super) fn from(&self, bin: usize, cell: usize) -> Option<&[f32; WIDTH]> {
+        self.values[bin * self.stride + cell..].first_chunk()
     }
 
-    /// Sums up each `cell_px` columns of each bin, which are overwritten, and multiplies the sums by `unit`.
+    /// Fills a row of cells, the one after the last, with the sums of votes in these rows of the strip.
     #[inline(always)]
-    pub(super) fn fill_row<'a>(
-        &mut self,
-        row: usize,
-        bins: impl Iterator<Item = &'a mut [f32]>,
-        cell_px: usize,
-        unit: f32,
-    ) {
-        let begin = row * self.orientations * self.stride;
-        for (cells, sums) in self.values[begin..].chunks_exact_mut(self.stride).zip(bins) {
-            let sums = &mut sums[..self.columns * cell_px];
-            let sums = fold(sums, &mut self.spare, cell_px);
-            for (cell, sum) in cells[..self.columns].iter_mut().zip(sums) {
-                *cell = sum * unit;
+    pub(super) fn fill_row(&mut self, row: usize, votes: &mut Votes, strip: &Strip, rows: Range<usize>, bins: &Bins) {
+        let cell_px = rows.len();
+        if cell_px > WIDTH {
+            return self.fill_large(row, votes, strip, rows, bins);
+        }
+        let at_a_time = WIDTH / cell_px;
+        for column in (0..self.columns).step_by(at_a_time) {
+            votes.take(strip, rows.clone(), column * cell_px, bins);
+            for (bin, cells) in self.values.chunks_exact_mut(self.stride).enumerate() {
+                let mut sums = votes.count(bin as u32);
+                self.fold.apply(&mut sums);
+                // What lies beyond the row is overwritten by the next one.
+                let cells = &mut cells[row * self.columns + column..];
+                if at_a_time > FEW {
+                    cells[..WIDTH].copy_from_slice(&sums.0);
+                } else {
+                    cells[..FEW].copy_from_slice(&sums.0[..FEW]);
+                }
+            }
+        }
+    }
+
+    /// As above for cells of more columns than are worked on at a time.
+    #[inline(always)]
+    fn fill_large(&mut self, row: usize, votes: &mut Votes, strip: &Strip, rows: Range<usize>, bins: &Bins) {
+        let cell_px = rows.len();
+        for column in 0..self.columns {
+            let cell = row * self.columns + column;
+            for x in (0..cell_px).step_by(WIDTH) {
+                votes.take(strip, rows.clone(), column * cell_px + x, bins);
+                for (bin, cells) in self.values.chunks_exact_mut(self.stride).enumerate() {
+                    let mut sum = if x == 0 { 0.0 } else { cells[cell] };
+                    for value in &votes.count(bin as u32).0[..WIDTH.min(cell_px - x)] {
+                        sum += value;
+                    }
+                    cells[cell] = sum;
+                }
             }
         }
     }
 }
 
-/// Sums of each `side` values, in a fixed order: by twos and threes for as long as that goes, as SIMD can do that.
-#[inline(always)]
-fn fold<'a>(mut from: &'a mut [f32], mut to: &'a mut [f32], mut side: usize) -> &'a [f32] {
-    while side > 1 {
-        let factor = [2, 3].into_iter().find(|&factor| side.is_multiple_of(factor)).unwrap_or(side);
-        match factor {
-            2 => add_each::<2>(from, to),
-            3 => add_each::<3>(from, to),
-            _ => add_any(from, to, factor),
-        }
-        let len = from.len() / factor;
-        (from, to) = (&mut to[..len], from);
-        side /= factor;
+/// Sums of each so many values, in a fixed order: by twos and threes for as long as that goes, as SIMD can do that.
+#[derive(Clone, Copy, Debug, Default)]
+struct Fold {
+    twos: u32,
+    threes: u32,
+    rest: usize,
+}
+
+impl Fold {
+    fn new(mut side: usize) -> Fold {
+        let twos = side.trailing_zeros();
+        side >>= twos;
+        let threes = (0..).find(|&n| !side.is_multiple_of(3usize.pow(n + 1))).unwrap_or(0);
+        Fold { twos, threes, rest: side / 3usize.pow(threes) }
     }
-    from
+
+    #[inline(always)]
+    fn apply(self, sums: &mut Lanes<f32>) {
+        for _ in 0..self.twos {
+            add_each::<2>(sums);
+        }
+        for _ in 0..self.threes {
+            add_each::<3>(sums);
+        }
+        if self.rest > 1 {
+            add_any(sums, self.rest);
+        }
+    }
 }
 
 #[inline(always)]
-fn add_each<const N: usize>(from: &[f32], to: &mut [f32]) {
-    for (values, to) in from.as_chunks::<N>().0.iter().zip(to) {
-        let mut sum = values[0];
-        for value in &values[1..] {
-            sum += value;
+fn add_each<const N: usize>(sums: &mut Lanes<f32>) {
+    let from = sums.0;
+    for i in 0..WIDTH / N {
+        let mut sum = from[i * N];
+        for j in 1..N {
+            sum += from[i * N + j];
         }
-        *to = sum;
+        sums.0[i] = sum;
     }
 }
 
 #[inline(always)]
-fn add_any(from: &[f32], to: &mut [f32], count: usize) {
-    for (values, to) in from.chunks_exact(count).zip(to) {
+fn add_any(sums: &mut Lanes<f32>, count: usize) {
+    for i in 0..WIDTH / count {
         let mut sum = 0.0;
-        for value in values {
-            sum += value;
+        for j in 0..count {
+            sum += sums.0[i * count + j];
         }
-        *to = sum;
+        sums.0[i] = sum;
     }
 }

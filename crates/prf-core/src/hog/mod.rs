@@ -3,9 +3,11 @@
 mod bins;
 mod blocks;
 mod cells;
+mod lanes;
 mod layout;
 mod normalize;
 mod params;
+mod points;
 mod strip;
 mod votes;
 
@@ -14,9 +16,9 @@ pub use params::{CellSize, HogParams, Norm};
 
 use bins::Bins;
 use cells::Cells;
-use normalize::{LANES, Lanes};
+use normalize::Feature;
 use strip::Strip;
-use votes::Columns;
+use votes::Votes;
 
 use crate::region::{Region, Sample};
 use crate::simd::{Kernel, Simd};
@@ -54,10 +56,10 @@ pub struct Hog {
 #[derive(Clone, Debug, Default)]
 struct Memory {
     strip: Strip,
-    columns: Columns,
+    votes: Votes,
     cells: Cells,
     /// The features of some blocks.
-    blocks: Vec<Lanes>,
+    blocks: Vec<Feature>,
 }
 
 impl Hog {
@@ -116,11 +118,11 @@ impl Memory {
     fn fit(&mut self, layout: &HogLayout) {
         let ([rows, columns], cell_px) = (layout.cells(), layout.cell_px());
         let orientations = layout.orientations();
-        let room = (columns * cell_px).next_multiple_of(votes::LANES);
+        let room = columns * cell_px + lanes::WIDTH;
         self.strip.reserve(strip_rows(cell_px), layout.shape()[1], room);
-        self.columns.resize(columns * cell_px, orientations);
+        self.votes.resize(cell_px);
         self.cells.resize([rows, columns], cell_px, orientations);
-        self.blocks.resize(layout.block_len(), [0.0; LANES]);
+        self.blocks.resize(layout.block_len(), lanes::Lanes::zero());
     }
 }
 
@@ -145,10 +147,13 @@ impl<P: Sample> Kernel for Compute<'_, P> {
 
     #[inline(always)]
     fn run(self) {
-        let Memory { strip, columns, cells, blocks } = self.memory;
-        let (rows, cell_px) = (self.layout.cells()[0], self.layout.cell_px());
+        let Memory { strip, votes, cells, blocks } = self.memory;
+        let (layout, bins, norm) = (self.layout, self.bins, self.norm);
+        let (rows, cell_px) = (layout.cells()[0], layout.cell_px());
         // Cell sums become means, and bytes become fractions of 255.
         let unit = 1.0 / (P::WHITE * (cell_px * cell_px) as f32);
+        let is_point = layout.cell_px() * layout.block_cells() == 1;
+        let row_len = layout.cells()[1] * layout.orientations();
         let at_a_time = strip_rows(cell_px) / cell_px;
         for row in 0..rows {
             let y = row % at_a_time * cell_px;
@@ -156,10 +161,16 @@ impl<P: Sample> Kernel for Compute<'_, P> {
                 let count = at_a_time.min(rows - row);
                 strip.fill(self.image, row * cell_px, count * cell_px);
             }
-            columns.sum(strip, y..y + cell_px, self.bins);
-            cells.fill_row(row, columns.bins_mut(), cell_px, unit);
+            if is_point {
+                let out = &mut self.out[row * row_len..][..row_len];
+                points::fill_row(votes, strip, y, (bins, unit, norm), layout, out);
+            } else {
+                cells.fill_row(row, votes, strip, y..y + cell_px, bins);
+            }
         }
-        blocks::collect(cells, self.layout, self.norm, blocks, self.out);
+        if !is_point {
+            blocks::collect(cells, unit, layout, norm, blocks, self.out);
+        }
     }
 }
 
@@ -190,6 +201,43 @@ mod tests {
                 let (dx, dy) = (dx * length, dy * length);
                 assert_eq!(bin_of(dx, dy, 8, true), eighth, "{dx}, {dy}");
                 assert_eq!(bin_of(dx, dy, 4, false), eighth % 4, "{dx}, {dy}");
+            }
+        }
+    }
+
+    /// Every instruction set of this machine gives the same bits.
+    #[test]
+    fn all_instruction_sets_give_the_same_bits() {
+        let noise = |i: usize| ((i + 1) * 2_654_435_761) >> 11;
+        let shapes = [[1, 1], [3, 2], [17, 66], [64, 64], [40, 131], [151, 90]];
+        let norms = [Norm::None, Norm::L1, Norm::L1Sqrt, Norm::L2, Norm::L2Hys];
+        for (i, [height, width]) in shapes.into_iter().cycle().take(300).enumerate() {
+            let pixels: Vec<u8> = (0..width * height).map(|i| noise(i) as u8 & [255, 3][i % 2]).collect();
+            let plane: Vec<f32> = pixels.iter().map(|&v| f32::from(v) / 255.0).collect();
+            let params = HogParams {
+                orientations: [9, 9, 1, 4, 16][noise(i) % 5],
+                signed: i % 3 == 0,
+                cell: CellSize::Px([1, 2, 3, 4, 5, 7, 8, 12, 15, 33, 70, 90][noise(i) / 7 % 12].min(height.min(width))),
+                block_cells: 1,
+                norm: norms[i % 5],
+            };
+            let larger = HogParams { block_cells: 1 + noise(i) / 3 % 3, ..params };
+            let params = if HogLayout::new(&larger, width, height).is_ok() { larger } else { params };
+            let layout = HogLayout::new(&params, width, height).expect("a block fits");
+            let (mut expected, mut features) = ([Vec::new(), Vec::new()], Vec::new());
+            for simd in Simd::available() {
+                let mut hog = Hog { simd, ..Hog::new(params).expect("valid") };
+                for (kind, expected) in expected.iter_mut().enumerate() {
+                    match kind {
+                        0 => hog.compute(&layout, Region::whole(width, height, &pixels), &mut features),
+                        _ => hog.compute(&layout, Region::whole(width, height, &plane), &mut features),
+                    }
+                    let bits: Vec<u32> = features.iter().map(|v| v.to_bits()).collect();
+                    if expected.is_empty() {
+                        expected.clone_from(&bits);
+                    }
+                    assert!(bits == *expected, "{simd:?}, {width}x{height}, {params:?}");
+                }
             }
         }
     }
