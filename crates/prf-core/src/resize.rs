@@ -8,6 +8,7 @@
 //! gradient at all. Normalisation knows no scale, so HOG would blow up the least rounding.
 
 use crate::region::{Region, Sample};
+use crate::simd::{Kernel, Simd};
 use crate::{Error, FrameView, PlaneView};
 
 /// Rescales pictures and keeps its working memory: after the first picture of a size nothing is
@@ -22,10 +23,10 @@ use crate::{Error, FrameView, PlaneView};
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct Resizer {
+    simd: Simd,
     across: Taps,
     down: Taps,
-    /// A row of the source.
-    line: Vec<f32>,
+    line: Line,
     /// The source with its width already rescaled, row by row.
     widened: Vec<f32>,
     output: Vec<f32>,
@@ -50,19 +51,53 @@ impl Resizer {
         self.down.prepare(image.height(), height);
         self.widened.resize(image.height() * width, 0.0);
         self.output.resize(height * width, 0.0);
-        for (y, out) in self.widened.chunks_exact_mut(width).enumerate() {
-            // Bytes stay whole numbers until they have been mixed, so that their differences are exact.
-            self.line.clear();
-            self.line.extend(image.row(y).iter().map(|pixel| pixel.value()));
-            self.across.mix_pixels(&self.line, out);
-            out.iter_mut().for_each(|v| *v /= P::WHITE);
-        }
-        let widened = Region::whole(width, image.height(), &self.widened);
-        for (y, out) in self.output.chunks_exact_mut(width).enumerate() {
-            self.down.mix_rows(widened, y, out);
-        }
+        let Resizer { simd, across, down, line, widened, output } = self;
+        simd.run(Rescale { image, across, down, line, widened, output });
         Region::whole(width, height, &self.output)
     }
+}
+
+/// Writes the picture to `output`.
+struct Rescale<'a, P> {
+    image: Region<'a, P>,
+    across: &'a Taps,
+    down: &'a Taps,
+    line: &'a mut Line,
+    widened: &'a mut [f32],
+    output: &'a mut [f32],
+}
+
+impl<P: Sample> Kernel for Rescale<'_, P> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let width = self.across.to;
+        let mut ready = 0;
+        for (y, out) in self.output.chunks_exact_mut(width).enumerate() {
+            // Just before it is needed, so that it is still in the nearest cache then.
+            while ready < self.down.starts[y] + self.down.count {
+                let widened = &mut self.widened[ready * width..][..width];
+                // Bytes stay whole numbers until they have been mixed, so that their differences are exact.
+                self.across.mix_pixels(self.line, self.image.row(ready), widened);
+                for value in widened {
+                    *value /= P::WHITE;
+                }
+                ready += 1;
+            }
+            let widened = Region::whole(width, self.image.height(), self.widened);
+            self.down.mix_rows(widened, y, out);
+        }
+    }
+}
+
+/// A row of the source.
+#[derive(Clone, Debug, Default)]
+struct Line {
+    pixels: Vec<f32>,
+    /// The two of them that each pixel of the result lies between. To look them up takes a load for each, where nothing
+    /// can be done for several at once; all else then can.
+    pairs: Vec<[f32; 2]>,
 }
 
 /// For every position along a side of the result: the source's positions that go into it, which lie
@@ -115,28 +150,45 @@ impl Taps {
     }
 
     /// Along a row.
-    fn mix_pixels(&self, row: &[f32], out: &mut [f32]) {
+    #[inline(always)]
+    fn mix_pixels<P: Sample>(&self, Line { pixels, pairs }: &mut Line, row: &[P], out: &mut [f32]) {
+        pixels.resize(row.len(), 0.0);
+        for (out, pixel) in pixels.iter_mut().zip(row) {
+            *out = pixel.value();
+        }
         let mut rounds = (1..).zip(self.weights.chunks_exact(self.to));
-        if let Some((_, weights)) = rounds.next() {
-            for ((out, &start), weight) in out.iter_mut().zip(&self.starts).zip(weights) {
-                *out = row[start] + weight * (row[start + 1] - row[start]);
+        let Some((_, weights)) = rounds.next() else {
+            // There is one pixel for each.
+            for (out, &start) in out.iter_mut().zip(&self.starts) {
+                *out = pixels[start];
             }
-        } else {
-            out.iter_mut().zip(&self.starts).for_each(|(out, &start)| *out = row[start]);
+            return;
+        };
+        pairs.resize(self.to, [0.0; 2]);
+        for (pair, &start) in pairs.iter_mut().zip(&self.starts) {
+            *pair = [pixels[start], pixels[start + 1]];
+        }
+        for ((out, [pixel, next]), weight) in out.iter_mut().zip(&*pairs).zip(weights) {
+            *out = pixel + weight * (next - pixel);
         }
         for (k, weights) in rounds {
             for ((out, &start), weight) in out.iter_mut().zip(&self.starts).zip(weights) {
-                *out += weight * (row[start + k] - row[start]);
+                *out += weight * (pixels[start + k] - pixels[start]);
             }
         }
     }
 
     /// Row `i` of the result, of whole rows.
+    #[inline(always)]
     fn mix_rows(&self, rows: Region<'_, f32>, i: usize, out: &mut [f32]) {
         let start = self.starts[i];
         let first = rows.row(start);
-        out.copy_from_slice(first);
-        for (k, weights) in (1..).zip(self.weights.chunks_exact(self.to)) {
+        let mut rounds = (1..).zip(self.weights.chunks_exact(self.to));
+        let Some((_, weights)) = rounds.next() else { return out.copy_from_slice(first) };
+        for ((out, pixel), first) in out.iter_mut().zip(rows.row(start + 1)).zip(first) {
+            *out = first + weights[i] * (pixel - first);
+        }
+        for (k, weights) in rounds {
             let (row, weight) = (rows.row(start + k), weights[i]);
             for ((out, pixel), first) in out.iter_mut().zip(row).zip(first) {
                 *out += weight * (pixel - first);

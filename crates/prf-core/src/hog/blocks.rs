@@ -22,26 +22,54 @@ pub(super) fn collect(
         gather(cells, unit, layout, first, spare);
         norm.apply(spare);
         let mut lane = 0;
-        while lane < WIDTH && !out.is_empty() {
+        while lane < WIDTH {
             let column = (first + lane) % stride;
-            let count = columns.saturating_sub(column).min(WIDTH - lane);
-            let (blocks, rest) = out.split_at_mut(count * layout.block_len());
-            interleave(spare, lane, blocks);
-            out = rest;
-            lane += count.max(1).max((stride - column).min(WIDTH - lane) * usize::from(column + count >= columns));
+            let cells = (stride - column).min(WIDTH - lane);
+            let blocks = columns.saturating_sub(column).min(cells);
+            let (now, rest) = out.split_at_mut(out.len().min(blocks * layout.block_len()));
+            interleave(spare, lane, now);
+            (out, lane) = (rest, lane + cells);
         }
     }
 }
+
+/// Blocks and features that are turned at a time; 9 bins are the most usual.
+const TILE: [usize; 2] = [8, 9];
 
 /// Lays blocks one behind the other, from this one on.
 #[inline(always)]
 fn interleave(features: &[Feature], lane: usize, out: &mut [f32]) {
     let len = features.len();
+    let (tiles, rest) = features.as_chunks::<{ TILE[1] }>();
+    let mut done = 0;
+    for (i, blocks) in out.chunks_exact_mut(TILE[0] * len).enumerate() {
+        for (j, features) in tiles.iter().enumerate() {
+            turn(features, lane + i * TILE[0], &mut blocks[j * TILE[1]..], len);
+        }
+        done += TILE[0];
+    }
     for (i, feature) in features.iter().enumerate() {
-        for (block, value) in out.chunks_exact_mut(len).zip(&feature.0[lane..]) {
+        // What the tiles have left out.
+        let from = if i < len - rest.len() { done } else { 0 };
+        for (block, value) in out[from * len..].chunks_exact_mut(len).zip(&feature.0[lane + from..]) {
             block[i] = *value;
         }
     }
+}
+
+/// The same for a tile, to blocks of this length.
+#[inline(always)]
+fn turn(features: &[Feature; TILE[1]], lane: usize, out: &mut [f32], len: usize) {
+    let columns: [&[f32; TILE[0]]; TILE[1]] = std::array::from_fn(|i| lanes(&features[i], lane));
+    for block in 0..TILE[0] {
+        let turned: [f32; TILE[1]] = std::array::from_fn(|i| columns[i][block]);
+        out[block * len..][..TILE[1]].copy_from_slice(&turned);
+    }
+}
+
+#[inline(always)]
+fn lanes(feature: &Feature, lane: usize) -> &[f32; TILE[0]] {
+    feature.0[lane..].first_chunk().unwrap_or(&[0.0; TILE[0]])
 }
 
 /// The features of some blocks.
@@ -52,8 +80,8 @@ fn gather(cells: &Cells, unit: f32, layout: &HogLayout, first: usize, features: 
         let at = first + cell / side * stride + cell % side;
         for (bin, feature) in features.iter_mut().enumerate() {
             if let Some(cells) = cells.from(bin, at) {
-                for i in 0..WIDTH {
-                    feature.0[i] = cells[i] * unit;
+                for (value, cell) in feature.0.iter_mut().zip(cells) {
+                    *value = cell * unit;
                 }
             }
         }
