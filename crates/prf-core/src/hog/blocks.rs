@@ -15,7 +15,7 @@ pub(super) fn collect(
     spare: &mut [Feature],
     out: &mut [f32],
 ) {
-    let ([rows, columns], stride) = (layout.blocks(), layout.cells()[1]);
+    let ([rows, columns], stride) = (layout.blocks(), cells.row_stride());
     let mut out = out;
     // By their first cells, whose order is that of the blocks. A block that would lie across the right border is left out.
     for first in (0..(rows - 1) * stride + columns).step_by(WIDTH) {
@@ -40,19 +40,27 @@ const TILE: [usize; 2] = [8, 9];
 #[inline(always)]
 fn interleave(features: &[Feature], lane: usize, out: &mut [f32]) {
     let len = features.len();
+    let count = out.len() / len;
     let (tiles, rest) = features.as_chunks::<{ TILE[1] }>();
-    let mut done = 0;
-    for (i, blocks) in out.chunks_exact_mut(TILE[0] * len).enumerate() {
-        for (j, features) in tiles.iter().enumerate() {
-            turn(features, lane + i * TILE[0], &mut blocks[j * TILE[1]..], len);
-        }
-        done += TILE[0];
+    if count < TILE[0] {
+        return interleave_each(features, lane, out, len, 0);
     }
+    for block in (0..count).step_by(TILE[0]) {
+        // The last tile may cover some blocks of the one before again.
+        let block = block.min(count - TILE[0]);
+        for (i, tile) in tiles.iter().enumerate() {
+            turn(tile, lane + block, &mut out[block * len + i * TILE[1]..], len);
+        }
+    }
+    interleave_each(rest, lane, out, len, len - rest.len());
+}
+
+/// The same feature by feature, to blocks of this length, in which the first one has this place.
+#[inline(always)]
+fn interleave_each(features: &[Feature], lane: usize, out: &mut [f32], len: usize, first: usize) {
     for (i, feature) in features.iter().enumerate() {
-        // What the tiles have left out.
-        let from = if i < len - rest.len() { done } else { 0 };
-        for (block, value) in out[from * len..].chunks_exact_mut(len).zip(&feature.0[lane + from..]) {
-            block[i] = *value;
+        for (block, value) in out.chunks_exact_mut(len).zip(&feature.0[lane..]) {
+            block[first + i] = *value;
         }
     }
 }
@@ -75,7 +83,7 @@ fn lanes(feature: &Feature, lane: usize) -> &[f32; TILE[0]] {
 /// The features of some blocks.
 #[inline(always)]
 fn gather(cells: &Cells, unit: f32, layout: &HogLayout, first: usize, features: &mut [Feature]) {
-    let (side, stride) = (layout.block_cells(), layout.cells()[1]);
+    let (side, stride) = (layout.block_cells(), cells.row_stride());
     for (cell, features) in features.chunks_exact_mut(layout.orientations()).enumerate() {
         let at = first + cell / side * stride + cell % side;
         for (bin, feature) in features.iter_mut().enumerate() {

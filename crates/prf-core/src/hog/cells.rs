@@ -13,44 +13,54 @@ const FEW: usize = 16;
 /// The histograms of all cells: of each bin in turn all cells, row by row.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Cells {
-    columns: usize,
+    cell_px: usize,
+    /// From one row to the next.
+    row_stride: usize,
     /// From one bin to the next.
-    stride: usize,
+    bin_stride: usize,
     values: Vec<f32>,
     fold: Fold,
 }
 
 impl Cells {
-    /// Prepares for so many rows and columns of cells.
-    pub(super) fn resize(&mut self, [rows, columns]: [usize; 2], cell_px: usize, orientations: usize) {
-        self.columns = columns;
+    /// Prepares for so many rows, of which one begins `row_stride` cells after the last.
+    pub(super) fn resize(&mut self, cell_px: usize, rows: usize, row_stride: usize, orientations: usize) {
+        (self.cell_px, self.row_stride) = (cell_px, row_stride);
         // Cells are written and read some at a time, also where there are fewer left.
-        self.stride = rows * columns + WIDTH;
-        self.values.resize(orientations * self.stride, 0.0);
+        self.bin_stride = rows * row_stride + WIDTH;
+        self.values.resize(orientations * self.bin_stride, 0.0);
         self.fold = Fold::new(cell_px);
+    }
+
+    /// From one row to the next.
+    pub(super) fn row_stride(&self) -> usize {
+        self.row_stride
     }
 
     /// A bin of some cells that follow each other, also from one row to the next.
     #[inline(always)]
     pub(super) fn from(&self, bin: usize, cell: usize) -> Option<&[f32; WIDTH]> {
-        self.values[bin * self.stride + cell..].first_chunk()
+        self.values[bin * self.bin_stride + cell..].first_chunk()
     }
 
-    /// Fills a row of cells, the one after the last, with the sums of votes in these rows of the strip.
+    /// Fills so many cells, from the beginning of this row on, with the sums of the votes in the strip.
     #[inline(always)]
-    pub(super) fn fill_row(&mut self, row: usize, votes: &mut Votes, strip: &Strip, rows: Range<usize>, bins: &Bins) {
-        let cell_px = rows.len();
-        if cell_px > WIDTH {
-            return self.fill_large(row, votes, strip, rows, bins);
+    pub(super) fn fill(&mut self, row: usize, count: usize, votes: &mut Votes, strip: &Strip, bins: &Bins) {
+        let first = row * self.row_stride;
+        if self.cell_px > WIDTH {
+            return self.fill_large(first..first + count, votes, strip, bins);
         }
-        let at_a_time = WIDTH / cell_px;
-        for column in (0..self.columns).step_by(at_a_time) {
-            votes.take(strip, rows.clone(), column * cell_px, bins);
-            for (bin, cells) in self.values.chunks_exact_mut(self.stride).enumerate() {
-                let mut sums = votes.count(bin as u32);
-                self.fold.apply(&mut sums);
-                // What lies beyond the row is overwritten by the next one.
-                let cells = &mut cells[row * self.columns + column..];
+        let at_a_time = WIDTH / self.cell_px;
+        for cell in (0..count).step_by(at_a_time) {
+            let any = votes.take(strip, 0..self.cell_px, cell * self.cell_px, bins);
+            for (bin, cells) in self.values.chunks_exact_mut(self.bin_stride).enumerate() {
+                let mut sums = Lanes::zero();
+                if any {
+                    sums = votes.count(bin as u32);
+                    self.fold.apply(&mut sums);
+                }
+                // What lies beyond the last is overwritten by the next row.
+                let cells = &mut cells[first + cell..];
                 if at_a_time > FEW {
                     cells[..WIDTH].copy_from_slice(&sums.0);
                 } else {
@@ -62,15 +72,13 @@ impl Cells {
 
     /// As above for cells of more columns than are worked on at a time.
     #[inline(always)]
-    fn fill_large(&mut self, row: usize, votes: &mut Votes, strip: &Strip, rows: Range<usize>, bins: &Bins) {
-        let cell_px = rows.len();
-        for column in 0..self.columns {
-            let cell = row * self.columns + column;
-            for x in (0..cell_px).step_by(WIDTH) {
-                votes.take(strip, rows.clone(), column * cell_px + x, bins);
-                for (bin, cells) in self.values.chunks_exact_mut(self.stride).enumerate() {
+    fn fill_large(&mut self, range: Range<usize>, votes: &mut Votes, strip: &Strip, bins: &Bins) {
+        for (i, cell) in range.enumerate() {
+            for x in (0..self.cell_px).step_by(WIDTH) {
+                votes.take(strip, 0..self.cell_px, i * self.cell_px + x, bins);
+                for (bin, cells) in self.values.chunks_exact_mut(self.bin_stride).enumerate() {
                     let mut sum = if x == 0 { 0.0 } else { cells[cell] };
-                    for value in &votes.count(bin as u32).0[..WIDTH.min(cell_px - x)] {
+                    for value in &votes.count(bin as u32).0[..WIDTH.min(self.cell_px - x)] {
                         sum += value;
                     }
                     cells[cell] = sum;

@@ -107,34 +107,62 @@ impl Hog {
     /// The HOG of an image whose shape and orientations are those of `layout`.
     pub(crate) fn compute<P: Sample>(&mut self, layout: &HogLayout, image: Region<'_, P>, out: &mut Vec<f32>) {
         debug_assert_eq!(layout.shape(), image.shape());
-        self.memory.fit(layout);
+        let cut = Cut::of(layout);
+        self.memory.fit(layout, cut);
         out.resize(layout.len(), 0.0);
         let (bins, norm, memory) = (&self.bins, self.params.norm, &mut self.memory);
-        self.simd.run(Compute { layout, image, bins, norm, memory, out });
+        self.simd.run(Compute { layout, cut, image, bins, norm, memory, out });
     }
+}
+
+/// How the work on pictures of one size is cut up.
+#[derive(Clone, Copy, Debug)]
+struct Cut {
+    /// Rows of pixels in a section of the strip, sections that are worked on at a time, and their distance in cells.
+    rows: usize,
+    sections: usize,
+    section_cells: usize,
+}
+
+impl Cut {
+    /// Floats that fit into the cache next to the processor, with some room for all else.
+    const NEAR: usize = 6000;
+
+    fn of(layout: &HogLayout) -> Cut {
+        let ([_, columns], cell_px) = (layout.cells(), layout.cell_px());
+        // What is left of the picture, and a column more on both sides, lie between two sections.
+        let section_cells = (layout.shape()[1] + 2).div_ceil(cell_px);
+        if is_point(layout) {
+            // The rows above and below are read again for each section, which counts where cells are small.
+            return Cut { rows: 16, sections: 1, section_cells };
+        }
+        let evenly = (columns * cell_px).is_multiple_of(lanes::WIDTH);
+        let near = Cut::NEAR / ((cell_px + 2) * section_cells * cell_px);
+        Cut { rows: cell_px, sections: if evenly { 1 } else { near.max(1) }, section_cells }
+    }
+}
+
+/// Whether a block is one pixel.
+fn is_point(layout: &HogLayout) -> bool {
+    layout.cell_px() * layout.block_cells() == 1
 }
 
 impl Memory {
-    fn fit(&mut self, layout: &HogLayout) {
-        let ([rows, columns], cell_px) = (layout.cells(), layout.cell_px());
-        let orientations = layout.orientations();
-        let room = columns * cell_px + lanes::WIDTH;
-        self.strip.reserve(strip_rows(cell_px), layout.shape()[1], room);
+    fn fit(&mut self, layout: &HogLayout, cut: Cut) {
+        let (rows, cell_px) = (layout.cells()[0], layout.cell_px());
+        self.strip.reserve(cut.rows, cut.section_cells * cell_px, cut.sections);
         self.votes.resize(cell_px);
-        self.cells.resize([rows, columns], cell_px, orientations);
-        self.blocks.resize(layout.block_len(), lanes::Lanes::zero());
+        if !is_point(layout) {
+            self.cells.resize(cell_px, rows, cut.section_cells, layout.orientations());
+            self.blocks.resize(layout.block_len(), lanes::Lanes::zero());
+        }
     }
-}
-
-/// How many rows of pixels are made floats at a time. Small enough for the cache next to the processor; large enough that
-/// the two rows at its border, which are read twice, hardly count.
-fn strip_rows(cell_px: usize) -> usize {
-    16usize.next_multiple_of(cell_px)
 }
 
 /// Writes the HOG of `image` to `out`, which has its length.
 struct Compute<'a, P> {
     layout: &'a HogLayout,
+    cut: Cut,
     image: Region<'a, P>,
     bins: &'a Bins,
     norm: Norm,
@@ -147,30 +175,27 @@ impl<P: Sample> Kernel for Compute<'_, P> {
 
     #[inline(always)]
     fn run(self) {
-        let Memory { strip, votes, cells, blocks } = self.memory;
-        let (layout, bins, norm) = (self.layout, self.bins, self.norm);
-        let (rows, cell_px) = (layout.cells()[0], layout.cell_px());
+        let [rows, columns] = self.layout.cells();
         // Cell sums become means, and bytes become fractions of 255.
-        let unit = 1.0 / (P::WHITE * (cell_px * cell_px) as f32);
-        let is_point = layout.cell_px() * layout.block_cells() == 1;
-        let row_len = layout.cells()[1] * layout.orientations();
-        let at_a_time = strip_rows(cell_px) / cell_px;
-        for row in 0..rows {
-            let y = row % at_a_time * cell_px;
-            if y == 0 {
-                let count = at_a_time.min(rows - row);
-                strip.fill(self.image, row * cell_px, count * cell_px);
+        let unit = 1.0 / (P::WHITE * self.layout.cell_px().pow(2) as f32);
+        let Compute { layout, cut, image, bins, norm, memory, out } = self;
+        let Memory { strip, votes, cells, blocks } = memory;
+        if is_point(layout) {
+            let out = out.chunks_exact_mut(columns * layout.block_len());
+            for (y, out) in out.enumerate() {
+                if y % cut.rows == 0 {
+                    strip.fill(image, y, 1);
+                }
+                points::fill_row(votes, strip, y % cut.rows, (bins, unit, norm), layout, out);
             }
-            if is_point {
-                let out = &mut self.out[row * row_len..][..row_len];
-                points::fill_row(votes, strip, y, (bins, unit, norm), layout, out);
-            } else {
-                cells.fill_row(row, votes, strip, y..y + cell_px, bins);
-            }
+            return;
         }
-        if !is_point {
-            blocks::collect(cells, unit, layout, norm, blocks, self.out);
+        for row in (0..rows).step_by(cut.sections) {
+            let sections = cut.sections.min(rows - row);
+            strip.fill(image, row * cut.rows, sections);
+            cells.fill(row, (sections - 1) * cut.section_cells + columns, votes, strip, bins);
         }
+        blocks::collect(cells, unit, layout, norm, blocks, out);
     }
 }
 

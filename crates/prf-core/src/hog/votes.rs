@@ -26,13 +26,15 @@ impl Votes {
         self.places.resize(cell_px, Lanes::zero());
     }
 
-    /// Takes the votes of these rows of the strip, from column `x` on.
+    /// Takes the votes in these rows of the strip, from column `x` on, and says whether there is one.
     #[inline(always)]
-    pub(super) fn take(&mut self, strip: &Strip, rows: Range<usize>, x: usize, bins: &Bins) {
+    pub(super) fn take(&mut self, strip: &Strip, rows: Range<usize>, x: usize, bins: &Bins) -> bool {
         let votes = self.weights.iter_mut().zip(&mut self.places);
+        let mut any = false;
         for (y, (weights, places)) in rows.zip(votes) {
-            cast(strip, [y, x], bins, weights, places);
+            any |= cast(strip, [y, x], bins, weights, places);
         }
+        any
     }
 
     /// The votes for one bin, added downwards.
@@ -79,28 +81,36 @@ fn vote(weight: f32, counts: bool) -> f32 {
     f32::from_bits(weight.to_bits() & u32::from(counts).wrapping_neg())
 }
 
-/// The votes of some columns of one row.
+/// The votes of some columns of one row, and whether there is one.
 #[inline(always)]
-fn cast(strip: &Strip, [y, x]: [usize; 2], bins: &Bins, weights: &mut Lanes<f32>, places: &mut Lanes<u32>) {
-    let Some([dx, dy]) = gradients(strip, y, x) else { return };
+fn cast(strip: &Strip, [y, x]: [usize; 2], bins: &Bins, weights: &mut Lanes<f32>, places: &mut Lanes<u32>) -> bool {
+    let [above, row, below] = strip.around(y);
+    let dx = differences(&row[x..], &row[x + 2..]);
+    let dy = differences(&above[x..], &below[x..]);
+    let mut any = 0;
+    for i in 0..WIDTH {
+        any |= dx.0[i].to_bits() | dy.0[i].to_bits();
+    }
+    // Much of a picture is flat.
+    if any == 0 {
+        *weights = Lanes::zero();
+        return false;
+    }
     for i in 0..WIDTH {
         weights.0[i] = (dx.0[i] * dx.0[i] + dy.0[i] * dy.0[i]).sqrt();
     }
     bins.assign(&dx, &dy, places);
+    true
 }
 
-/// `d/dx` and `d/dy` of some columns of a row, `I(x+1) − I(x−1)`, not halved.
+/// `to − from`, not halved where it is a central difference.
 #[inline(always)]
-fn gradients(strip: &Strip, y: usize, x: usize) -> Option<[Lanes<f32>; 2]> {
-    let [above, row, below] = strip.around(y);
-    let (left, right) = (row[x..].first_chunk::<WIDTH>()?, row[x + 2..].first_chunk::<WIDTH>()?);
-    let (above, below) = (above[x..].first_chunk::<WIDTH>()?, below[x..].first_chunk::<WIDTH>()?);
-    let (mut dx, mut dy) = (Lanes::zero(), Lanes::zero());
-    for i in 0..WIDTH {
-        dx.0[i] = right[i] - left[i];
+fn differences(from: &[f32], to: &[f32]) -> Lanes<f32> {
+    let mut differences = Lanes::zero();
+    if let (Some(from), Some(to)) = (from.first_chunk::<WIDTH>(), to.first_chunk::<WIDTH>()) {
+        for i in 0..WIDTH {
+            differences.0[i] = to[i] - from[i];
+        }
     }
-    for i in 0..WIDTH {
-        dy.0[i] = below[i] - above[i];
-    }
-    Some([dx, dy])
+    differences
 }
