@@ -83,7 +83,7 @@ fn descriptors(c: &mut Criterion) {
         let motion = MotionParams { delta: DeltaSchedule::Duration(0.4), ..MotionParams::default() };
         for (name, kind, goal, frames, cell) in [
             ("direct", DescriptorParams::Direct, &Frame::new(width, height), &frames[..], 0.03),
-            ("window", DescriptorParams::Window(WindowParams::default()), &part, &[picture.clone()], 0.1),
+            ("window", DescriptorParams::Window(WindowParams::default()), &part, std::slice::from_ref(&picture), 0.1),
             ("motion", DescriptorParams::Motion(motion), &picture, &frames, 0.05),
         ] {
             let mut params = RewardParams::default();

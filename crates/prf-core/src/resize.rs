@@ -91,9 +91,10 @@ impl<P: Sample> Kernel for Rescale<'_, P> {
     }
 }
 
-/// A row of the source.
+/// A row of the source, to be stretched.
 #[derive(Clone, Debug, Default)]
 struct Line {
+    /// In their own unit.
     pixels: Vec<f32>,
     /// The two of them that each pixel of the result lies between. To look them up takes a load for each, where nothing
     /// can be done for several at once; all else then can.
@@ -238,6 +239,20 @@ mod tests {
             for (got, expected) in got.as_slice().iter().zip(reference(&image, to.0, to.1)) {
                 assert!((got - expected).abs() < 2e-6, "{got} for {expected}, {from:?} to {to:?}");
             }
+        }
+    }
+
+    #[test]
+    fn all_instruction_sets_give_the_same_bits() {
+        for (from, to) in [((20, 30), (84, 84)), ((84, 84), (20, 31)), ((33, 70), (71, 50)), ((1, 9), (5, 1))] {
+            let image = noise(from.0, from.1);
+            let mut results = Simd::available().map(|simd| {
+                let mut resizer = Resizer { simd, ..Resizer::default() };
+                let plane = resizer.resize(image.view(), to.0, to.1).expect("sides above 0");
+                plane.as_slice().iter().map(|v| v.to_bits()).collect::<Vec<u32>>()
+            });
+            let first = results.next().expect("there is always one");
+            assert!(results.all(|other| other == first), "{from:?} to {to:?}");
         }
     }
 

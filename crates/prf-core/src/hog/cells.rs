@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::bins::Bins;
 use super::lanes::{Lanes, WIDTH};
 use super::strip::Strip;
-use super::votes::Votes;
+use super::votes::{BINS, Votes};
 
 /// Cells that are written at a time where there are not more.
 const FEW: usize = 16;
@@ -53,18 +53,16 @@ impl Cells {
         let at_a_time = WIDTH / self.cell_px;
         for cell in (0..count).step_by(at_a_time) {
             let any = votes.take(strip, 0..self.cell_px, cell * self.cell_px, bins);
-            for (bin, cells) in self.values.chunks_exact_mut(self.bin_stride).enumerate() {
-                let mut sums = Lanes::zero();
+            for (i, some) in self.values.chunks_mut(BINS * self.bin_stride).enumerate() {
+                let mut counts = [Lanes::zero(); BINS];
                 if any {
-                    sums = votes.count(bin as u32);
-                    self.fold.apply(&mut sums);
+                    counts = votes.count(i * BINS);
                 }
-                // What lies beyond the last is overwritten by the next row.
-                let cells = &mut cells[first + cell..];
-                if at_a_time > FEW {
-                    cells[..WIDTH].copy_from_slice(&sums.0);
-                } else {
-                    cells[..FEW].copy_from_slice(&sums.0[..FEW]);
+                for (cells, sums) in some.chunks_exact_mut(self.bin_stride).zip(&mut counts) {
+                    if any {
+                        self.fold.apply(sums);
+                    }
+                    put(sums, &mut cells[first + cell..], at_a_time);
                 }
             }
         }
@@ -78,13 +76,23 @@ impl Cells {
                 votes.take(strip, 0..self.cell_px, i * self.cell_px + x, bins);
                 for (bin, cells) in self.values.chunks_exact_mut(self.bin_stride).enumerate() {
                     let mut sum = if x == 0 { 0.0 } else { cells[cell] };
-                    for value in &votes.count(bin as u32).0[..WIDTH.min(self.cell_px - x)] {
+                    for value in &votes.count(bin)[0].0[..WIDTH.min(self.cell_px - x)] {
                         sum += value;
                     }
                     cells[cell] = sum;
                 }
             }
         }
+    }
+}
+
+/// Writes `count` cells or some more. What lies beyond the last of a row is overwritten by the next row.
+#[inline(always)]
+fn put(sums: &Lanes<f32>, cells: &mut [f32], count: usize) {
+    if count > FEW {
+        cells[..WIDTH].copy_from_slice(&sums.0);
+    } else {
+        cells[..FEW].copy_from_slice(&sums.0[..FEW]);
     }
 }
 

@@ -10,6 +10,9 @@ use super::bins::Bins;
 use super::lanes::{Lanes, WIDTH};
 use super::strip::Strip;
 
+/// Bins that are counted at a time: weights and places are read once for all of them, and their sums fit the registers.
+pub(super) const BINS: usize = 3;
+
 /// The votes of some columns of a row of cells, row by row.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Votes {
@@ -37,9 +40,9 @@ impl Votes {
         any
     }
 
-    /// The votes for one bin, added downwards.
+    /// The votes for some bins from this one on, added downwards.
     #[inline(always)]
-    pub(super) fn count(&self, bin: u32) -> Lanes<f32> {
+    pub(super) fn count(&self, bin: usize) -> [Lanes<f32>; BINS] {
         // Where there are few rows, a sum that has to wait in memory for the next one costs more than all else.
         match self.weights.len() {
             1 => self.first::<1>(bin),
@@ -50,7 +53,9 @@ impl Votes {
                 for row in 4..rows {
                     let (weights, places) = (&self.weights[row], &self.places[row]);
                     for i in 0..WIDTH {
-                        sums.0[i] += vote(weights.0[i], places.0[i] == bin);
+                        for (k, sums) in sums.iter_mut().enumerate() {
+                            sums.0[i] += vote(weights.0[i], places.0[i] == (bin + k) as u32);
+                        }
                     }
                 }
                 sums
@@ -58,17 +63,21 @@ impl Votes {
         }
     }
 
-    /// The votes for one bin in the first rows.
+    /// The votes for these bins in the first rows.
     #[inline(always)]
-    fn first<const ROWS: usize>(&self, bin: u32) -> Lanes<f32> {
-        let mut sums = Lanes::zero();
+    fn first<const ROWS: usize>(&self, bin: usize) -> [Lanes<f32>; BINS] {
+        let mut sums = [Lanes::zero(); BINS];
         if let (Some(weights), Some(places)) = (self.weights.first_chunk::<ROWS>(), self.places.first_chunk::<ROWS>()) {
             for i in 0..WIDTH {
-                let mut sum = 0.0;
+                let mut sum = [0.0; BINS];
                 for row in 0..ROWS {
-                    sum += vote(weights[row].0[i], places[row].0[i] == bin);
+                    for (k, sum) in sum.iter_mut().enumerate() {
+                        *sum += vote(weights[row].0[i], places[row].0[i] == (bin + k) as u32);
+                    }
                 }
-                sums.0[i] = sum;
+                for k in 0..BINS {
+                    sums[k].0[i] = sum[k];
+                }
             }
         }
         sums
