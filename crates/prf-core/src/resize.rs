@@ -26,7 +26,7 @@ pub struct Resizer {
     simd: Simd,
     across: Taps,
     down: Taps,
-    line: Line,
+    lines: Lines,
     /// The source with its width already rescaled, row by row.
     widened: Vec<f32>,
     output: Vec<f32>,
@@ -49,10 +49,10 @@ impl Resizer {
     pub(crate) fn rescale<P: Sample>(&mut self, image: Region<'_, P>, [height, width]: [usize; 2]) -> Region<'_, f32> {
         self.across.prepare(image.width(), width);
         self.down.prepare(image.height(), height);
-        self.widened.resize(image.height() * width, 0.0);
+        self.widened.resize(image.height().next_multiple_of(ROWS) * width, 0.0);
         self.output.resize(height * width, 0.0);
-        let Resizer { simd, across, down, line, widened, output } = self;
-        simd.run(Rescale { image, across, down, line, widened, output });
+        let Resizer { simd, across, down, lines, widened, output } = self;
+        simd.run(Rescale { image, across, down, lines, widened, output });
         Region::whole(width, height, &self.output)
     }
 }
@@ -62,7 +62,7 @@ struct Rescale<'a, P> {
     image: Region<'a, P>,
     across: &'a Taps,
     down: &'a Taps,
-    line: &'a mut Line,
+    lines: &'a mut Lines,
     widened: &'a mut [f32],
     output: &'a mut [f32],
 }
@@ -77,28 +77,44 @@ impl<P: Sample> Kernel for Rescale<'_, P> {
         for (y, out) in self.output.chunks_exact_mut(width).enumerate() {
             // Just before it is needed, so that it is still in the nearest cache then.
             while ready < self.down.starts[y] + self.down.count {
-                let widened = &mut self.widened[ready * width..][..width];
+                let widened = &mut self.widened[ready * width..][..ROWS * width];
                 // Bytes stay whole numbers until they have been mixed, so that their differences are exact.
-                self.across.mix_pixels(self.line, self.image.row(ready), widened);
+                self.lines.fill(self.image, ready);
+                self.across.mix_pixels(self.lines, widened);
                 for value in widened {
                     *value /= P::WHITE;
                 }
-                ready += 1;
+                ready += ROWS;
             }
-            let widened = Region::whole(width, self.image.height(), self.widened);
+            let widened = Region::whole(width, self.widened.len() / width, self.widened);
             self.down.mix_rows(widened, y, out);
         }
     }
 }
 
-/// A row of the source, to be stretched.
+/// Rows that are widened together.
+const ROWS: usize = 2;
+
+/// Rows of the source, to be widened.
 #[derive(Clone, Debug, Default)]
-struct Line {
-    /// In their own unit.
-    pixels: Vec<f32>,
-    /// The two of them that each pixel of the result lies between. To look them up takes a load for each, where nothing
-    /// can be done for several at once; all else then can.
-    pairs: Vec<[f32; 2]>,
+struct Lines {
+    /// In their own unit, those of a column together.
+    columns: Vec<[f32; ROWS]>,
+    /// The two columns that each of the result lies between. To look them up takes a load for each, where nothing can be
+    /// done for several at once; all else then can.
+    pairs: Vec<[[f32; ROWS]; 2]>,
+}
+
+impl Lines {
+    /// Takes the rows from this one on; behind the last row it comes again.
+    #[inline(always)]
+    fn fill<P: Sample>(&mut self, image: Region<'_, P>, first: usize) {
+        self.columns.resize(image.width(), [0.0; ROWS]);
+        let [above, below] = [first, first + 1].map(|y| image.row(y.min(image.height() - 1)));
+        for ((column, above), below) in self.columns.iter_mut().zip(above).zip(below) {
+            *column = [above.value(), below.value()];
+        }
+    }
 }
 
 /// For every position along a side of the result: the source's positions that go into it, which lie
@@ -150,31 +166,31 @@ impl Taps {
         }
     }
 
-    /// Along a row.
+    /// Along rows, to rows that lie one after the other.
     #[inline(always)]
-    fn mix_pixels<P: Sample>(&self, Line { pixels, pairs }: &mut Line, row: &[P], out: &mut [f32]) {
-        pixels.resize(row.len(), 0.0);
-        for (out, pixel) in pixels.iter_mut().zip(row) {
-            *out = pixel.value();
-        }
+    fn mix_pixels(&self, Lines { columns, pairs }: &mut Lines, out: &mut [f32]) {
+        let (above, below) = out.split_at_mut(self.to);
         let mut rounds = (1..).zip(self.weights.chunks_exact(self.to));
         let Some((_, weights)) = rounds.next() else {
             // There is one pixel for each.
-            for (out, &start) in out.iter_mut().zip(&self.starts) {
-                *out = pixels[start];
+            for ((above, below), &start) in above.iter_mut().zip(below).zip(&self.starts) {
+                [*above, *below] = columns[start];
             }
             return;
         };
-        pairs.resize(self.to, [0.0; 2]);
+        pairs.resize(self.to, [[0.0; ROWS]; 2]);
         for (pair, &start) in pairs.iter_mut().zip(&self.starts) {
-            *pair = [pixels[start], pixels[start + 1]];
+            *pair = [columns[start], columns[start + 1]];
         }
-        for ((out, [pixel, next]), weight) in out.iter_mut().zip(&*pairs).zip(weights) {
-            *out = pixel + weight * (next - pixel);
+        for (((above, below), [pixel, next]), weight) in above.iter_mut().zip(&mut *below).zip(&*pairs).zip(weights) {
+            *above = pixel[0] + weight * (next[0] - pixel[0]);
+            *below = pixel[1] + weight * (next[1] - pixel[1]);
         }
         for (k, weights) in rounds {
-            for ((out, &start), weight) in out.iter_mut().zip(&self.starts).zip(weights) {
-                *out += weight * (pixels[start + k] - pixels[start]);
+            for (((above, below), &start), weight) in above.iter_mut().zip(&mut *below).zip(&self.starts).zip(weights) {
+                let (pixel, first) = (columns[start + k], columns[start]);
+                *above += weight * (pixel[0] - first[0]);
+                *below += weight * (pixel[1] - first[1]);
             }
         }
     }
