@@ -120,8 +120,11 @@ impl Fold {
         for _ in 0..self.threes {
             add_each::<3>(sums);
         }
-        if self.rest > 1 {
-            add_any(sums, self.rest);
+        match self.rest {
+            1 => {}
+            5 => add_each::<5>(sums),
+            7 => add_each::<7>(sums),
+            rest => add_any(sums, rest),
         }
     }
 }
