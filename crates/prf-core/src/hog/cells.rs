@@ -96,24 +96,34 @@ fn put(sums: &Lanes<f32>, cells: &mut [f32], count: usize) {
     }
 }
 
-/// Sums of each so many values, in a fixed order: by twos and threes for as long as that goes, as SIMD can do that.
+/// Sums of each so many values, in a fixed order: by small factors for as long as that goes, as SIMD can do that.
 #[derive(Clone, Copy, Debug, Default)]
 struct Fold {
+    sixes: u32,
     twos: u32,
     threes: u32,
     rest: usize,
 }
 
 impl Fold {
-    fn new(mut side: usize) -> Fold {
-        let twos = side.trailing_zeros();
-        side >>= twos;
-        let threes = (0..).find(|&n| !side.is_multiple_of(3usize.pow(n + 1))).unwrap_or(0);
-        Fold { twos, threes, rest: side / 3usize.pow(threes) }
+    fn new(side: usize) -> Fold {
+        let mut rest = side;
+        let mut divide = |factor: usize| {
+            let mut count = 0;
+            while rest.is_multiple_of(factor) {
+                (rest, count) = (rest / factor, count + 1);
+            }
+            count
+        };
+        let (sixes, twos, threes) = (divide(6), divide(2), divide(3));
+        Fold { sixes, twos, threes, rest }
     }
 
     #[inline(always)]
     fn apply(self, sums: &mut Lanes<f32>) {
+        for _ in 0..self.sixes {
+            add_each::<6>(sums);
+        }
         for _ in 0..self.twos {
             add_each::<2>(sums);
         }
