@@ -39,18 +39,36 @@ pub(crate) fn crop_box_of(frame: Region<'_, u8>) -> Rect {
     let (Some(top), Some(bottom)) = ((0..height).find(lit), (0..height).rfind(lit)) else {
         return Rect { x: 0, y: 0, width, height };
     };
-    // Of each row only what could still widen the box is looked at.
-    let (mut left, mut right) = (width, 0);
-    for y in top..=bottom {
-        let row = frame.row(y);
-        if let Some(first) = row[..left].iter().position(|&v| v != 0) {
-            left = first;
-        }
-        if let Some(last) = row[right..].iter().rposition(|&v| v != 0) {
-            right += last + 1;
+    let rows = || (top..=bottom).map(|y| frame.row(y));
+    let left = first_light(width, |x, len| lit_columns(rows(), x, len));
+    // The same from the other side.
+    let right = width - first_light(width, |x, len| reversed(lit_columns(rows(), width - x - len, len), len));
+    Rect { x: left, y: top, width: right - left, height: bottom - top + 1 }
+}
+
+/// Columns that are looked at together.
+const COLUMNS: usize = 64;
+
+/// How many columns are black before the first that isn't, of `width`; `lit` tells about the `len` columns from `x` on.
+fn first_light(width: usize, lit: impl Fn(usize, usize) -> [u8; COLUMNS]) -> usize {
+    let light = |x: usize| lit(x, COLUMNS.min(width - x)).iter().position(|&v| v != 0).map(|at| x + at);
+    (0..width).step_by(COLUMNS).find_map(light).unwrap_or(width)
+}
+
+/// Of each of these columns something that is 0 only if all its pixels are.
+fn lit_columns<'a>(rows: impl Iterator<Item = &'a [u8]>, x: usize, len: usize) -> [u8; COLUMNS] {
+    let mut seen = [0; COLUMNS];
+    for row in rows {
+        for (seen, &v) in seen.iter_mut().zip(&row[x..x + len]) {
+            *seen |= v;
         }
     }
-    Rect { x: left, y: top, width: right - left, height: bottom - top + 1 }
+    seen
+}
+
+fn reversed(mut columns: [u8; COLUMNS], len: usize) -> [u8; COLUMNS] {
+    columns[..len].reverse();
+    columns
 }
 
 /// Whether a pixel is not black. Without an early exit, so that it runs many bytes at a time.

@@ -49,7 +49,6 @@ mod evidence;
 mod explain;
 mod frame;
 mod goal_check;
-mod gradient;
 mod hog;
 #[cfg(feature = "io")]
 pub mod io;

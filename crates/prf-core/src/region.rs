@@ -6,8 +6,6 @@ pub(crate) trait Sample: Copy + PartialEq {
     const WHITE: f32;
     /// The value in its own unit, exactly.
     fn value(self) -> f32;
-    /// `self - other` in the sample's own unit. Exact for bytes, so that a gradient of bytes is too.
-    fn minus(self, other: Self) -> f32;
 }
 
 impl Sample for u8 {
@@ -16,10 +14,6 @@ impl Sample for u8 {
     fn value(self) -> f32 {
         f32::from(self)
     }
-
-    fn minus(self, other: u8) -> f32 {
-        f32::from(i16::from(self) - i16::from(other))
-    }
 }
 
 impl Sample for f32 {
@@ -27,10 +21,6 @@ impl Sample for f32 {
 
     fn value(self) -> f32 {
         self
-    }
-
-    fn minus(self, other: f32) -> f32 {
-        self - other
     }
 }
 

@@ -8,6 +8,7 @@
 //! gradient at all. Normalisation knows no scale, so HOG would blow up the least rounding.
 
 use crate::region::{Region, Sample};
+use crate::simd::{Kernel, Simd};
 use crate::{Error, FrameView, PlaneView};
 
 /// Rescales pictures and keeps its working memory: after the first picture of a size nothing is
@@ -23,10 +24,10 @@ use crate::{Error, FrameView, PlaneView};
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct Resizer {
+    simd: Simd,
     across: Taps,
     down: Taps,
-    /// A row of the source.
-    line: Vec<f32>,
+    lines: Lines,
     /// The source with its width already rescaled, row by row.
     widened: Vec<f32>,
     output: Vec<f32>,
@@ -49,20 +50,71 @@ impl Resizer {
     pub(crate) fn rescale<P: Sample>(&mut self, image: Region<'_, P>, [height, width]: [usize; 2]) -> Region<'_, f32> {
         self.across.prepare(image.width(), width);
         self.down.prepare(image.height(), height);
-        self.widened.resize(image.height() * width, 0.0);
+        self.widened.resize(image.height().next_multiple_of(ROWS) * width, 0.0);
         self.output.resize(height * width, 0.0);
-        for (y, out) in self.widened.chunks_exact_mut(width).enumerate() {
-            // Bytes stay whole numbers until they have been mixed, so that their differences are exact.
-            self.line.clear();
-            self.line.extend(image.row(y).iter().map(|pixel| pixel.value()));
-            self.across.mix_pixels(&self.line, out);
-            out.iter_mut().for_each(|v| *v /= P::WHITE);
-        }
-        let widened = Region::whole(width, image.height(), &self.widened);
+        let Resizer { simd, across, down, lines, widened, output } = self;
+        simd.run(Rescale { image, across, down, lines, widened, output });
+        Region::whole(width, height, &self.output)
+    }
+}
+
+/// Writes the picture to `output`.
+struct Rescale<'a, P> {
+    image: Region<'a, P>,
+    across: &'a Taps,
+    down: &'a Taps,
+    lines: &'a mut Lines,
+    widened: &'a mut [f32],
+    output: &'a mut [f32],
+}
+
+impl<P: Sample> Kernel for Rescale<'_, P> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let width = self.across.to;
+        let mut ready = 0;
         for (y, out) in self.output.chunks_exact_mut(width).enumerate() {
+            // Just before it is needed, so that it is still in the nearest cache then.
+            while ready < self.down.starts[y] + self.down.count {
+                let widened = &mut self.widened[ready * width..][..ROWS * width];
+                // Bytes stay whole numbers until they have been mixed, so that their differences are exact.
+                self.lines.fill(self.image, ready);
+                self.across.mix_pixels(self.lines, widened);
+                for value in widened {
+                    *value /= P::WHITE;
+                }
+                ready += ROWS;
+            }
+            let widened = Region::whole(width, self.widened.len() / width, self.widened);
             self.down.mix_rows(widened, y, out);
         }
-        Region::whole(width, height, &self.output)
+    }
+}
+
+/// Rows that are widened together.
+const ROWS: usize = 2;
+
+/// Rows of the source, to be widened.
+#[derive(Clone, Debug, Default)]
+struct Lines {
+    /// In their own unit, those of a column together.
+    columns: Vec<[f32; ROWS]>,
+    /// The two columns that each of the result lies between. To look them up takes a load for each, where nothing can be
+    /// done for several at once; all else then can.
+    pairs: Vec<[[f32; ROWS]; 2]>,
+}
+
+impl Lines {
+    /// Takes the rows from this one on; behind the last row it comes again.
+    #[inline(always)]
+    fn fill<P: Sample>(&mut self, image: Region<'_, P>, first: usize) {
+        self.columns.resize(image.width(), [0.0; ROWS]);
+        let [above, below] = [first, first + 1].map(|y| image.row(y.min(image.height() - 1)));
+        for ((column, above), below) in self.columns.iter_mut().zip(above).zip(below) {
+            *column = [above.value(), below.value()];
+        }
     }
 }
 
@@ -115,29 +167,46 @@ impl Taps {
         }
     }
 
-    /// Along a row.
-    fn mix_pixels(&self, row: &[f32], out: &mut [f32]) {
+    /// Along rows, to rows that lie one after the other.
+    #[inline(always)]
+    fn mix_pixels(&self, Lines { columns, pairs }: &mut Lines, out: &mut [f32]) {
+        let (above, below) = out.split_at_mut(self.to);
         let mut rounds = (1..).zip(self.weights.chunks_exact(self.to));
-        if let Some((_, weights)) = rounds.next() {
-            for ((out, &start), weight) in out.iter_mut().zip(&self.starts).zip(weights) {
-                *out = row[start] + weight * (row[start + 1] - row[start]);
+        let Some((_, weights)) = rounds.next() else {
+            // There is one pixel for each.
+            for ((above, below), &start) in above.iter_mut().zip(below).zip(&self.starts) {
+                [*above, *below] = columns[start];
             }
-        } else {
-            out.iter_mut().zip(&self.starts).for_each(|(out, &start)| *out = row[start]);
+            return;
+        };
+        pairs.resize(self.to, [[0.0; ROWS]; 2]);
+        for (pair, &start) in pairs.iter_mut().zip(&self.starts) {
+            *pair = [columns[start], columns[start + 1]];
+        }
+        for (((above, below), [pixel, next]), weight) in above.iter_mut().zip(&mut *below).zip(&*pairs).zip(weights) {
+            *above = pixel[0] + weight * (next[0] - pixel[0]);
+            *below = pixel[1] + weight * (next[1] - pixel[1]);
         }
         for (k, weights) in rounds {
-            for ((out, &start), weight) in out.iter_mut().zip(&self.starts).zip(weights) {
-                *out += weight * (row[start + k] - row[start]);
+            for (((above, below), &start), weight) in above.iter_mut().zip(&mut *below).zip(&self.starts).zip(weights) {
+                let (pixel, first) = (columns[start + k], columns[start]);
+                *above += weight * (pixel[0] - first[0]);
+                *below += weight * (pixel[1] - first[1]);
             }
         }
     }
 
     /// Row `i` of the result, of whole rows.
+    #[inline(always)]
     fn mix_rows(&self, rows: Region<'_, f32>, i: usize, out: &mut [f32]) {
         let start = self.starts[i];
         let first = rows.row(start);
-        out.copy_from_slice(first);
-        for (k, weights) in (1..).zip(self.weights.chunks_exact(self.to)) {
+        let mut rounds = (1..).zip(self.weights.chunks_exact(self.to));
+        let Some((_, weights)) = rounds.next() else { return out.copy_from_slice(first) };
+        for ((out, pixel), first) in out.iter_mut().zip(rows.row(start + 1)).zip(first) {
+            *out = first + weights[i] * (pixel - first);
+        }
+        for (k, weights) in rounds {
             let (row, weight) = (rows.row(start + k), weights[i]);
             for ((out, pixel), first) in out.iter_mut().zip(row).zip(first) {
                 *out += weight * (pixel - first);
@@ -187,6 +256,20 @@ mod tests {
             for (got, expected) in got.as_slice().iter().zip(reference(&image, to.0, to.1)) {
                 assert!((got - expected).abs() < 2e-6, "{got} for {expected}, {from:?} to {to:?}");
             }
+        }
+    }
+
+    #[test]
+    fn all_instruction_sets_give_the_same_bits() {
+        for (from, to) in [((20, 30), (84, 84)), ((84, 84), (20, 31)), ((33, 70), (71, 50)), ((1, 9), (5, 1))] {
+            let image = noise(from.0, from.1);
+            let mut results = Simd::available().map(|simd| {
+                let mut resizer = Resizer { simd, ..Resizer::default() };
+                let plane = resizer.resize(image.view(), to.0, to.1).expect("sides above 0");
+                plane.as_slice().iter().map(|v| v.to_bits()).collect::<Vec<u32>>()
+            });
+            let first = results.next().expect("there is always one");
+            assert!(results.all(|other| other == first), "{from:?} to {to:?}");
         }
     }
 

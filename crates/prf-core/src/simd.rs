@@ -56,6 +56,12 @@ impl Level {
     }
 }
 
+impl Default for Simd {
+    fn default() -> Simd {
+        Simd::detect()
+    }
+}
+
 impl Simd {
     /// All that this machine has, the fastest first.
     pub(crate) fn available() -> impl Iterator<Item = Simd> {

@@ -1,17 +1,30 @@
 //! Histograms of oriented gradients (Dalal and Triggs, 2005), as scikit-image defines them.
 
 mod bins;
+mod blocks;
+mod cells;
+mod lanes;
 mod layout;
 mod normalize;
 mod params;
+mod points;
+mod strip;
+mod votes;
+
+#[cfg(test)]
+mod tests;
 
 pub use layout::HogLayout;
 pub use params::{CellSize, HogParams, Norm};
 
-use bins::{Bins, Votes};
+use bins::Bins;
+use cells::Cells;
+use normalize::Feature;
+use strip::Strip;
+use votes::Votes;
 
-use crate::gradient;
 use crate::region::{Region, Sample};
+use crate::simd::{Kernel, Simd};
 use crate::{Error, FrameView, PlaneView};
 
 /// Computes HOGs (paper, section "HOG features") and keeps its working memory, so that after the first picture of a size
@@ -36,11 +49,20 @@ use crate::{Error, FrameView, PlaneView};
 /// ```
 #[derive(Clone, Debug)]
 pub struct Hog {
+    simd: Simd,
     params: HogParams,
     bins: Bins,
+    memory: Memory,
+}
+
+/// What is worked on, kept from picture to picture.
+#[derive(Clone, Debug, Default)]
+struct Memory {
+    strip: Strip,
     votes: Votes,
-    /// One histogram a cell, row by row.
-    histograms: Vec<f32>,
+    cells: Cells,
+    /// The features of some blocks.
+    blocks: Vec<Feature>,
 }
 
 impl Hog {
@@ -51,12 +73,8 @@ impl Hog {
     /// [`Error::InvalidParam`] as [`HogParams::validate`].
     pub fn new(params: HogParams) -> Result<Hog, Error> {
         params.validate()?;
-        Ok(Hog {
-            params,
-            bins: Bins::new(params.orientations, params.signed),
-            votes: Votes::default(),
-            histograms: Vec::new(),
-        })
+        let bins = Bins::new(params.orientations, params.signed);
+        Ok(Hog { simd: Simd::detect(), params, bins, memory: Memory::default() })
     }
 
     /// The parameters it was made with.
@@ -92,108 +110,94 @@ impl Hog {
     /// The HOG of an image whose shape and orientations are those of `layout`.
     pub(crate) fn compute<P: Sample>(&mut self, layout: &HogLayout, image: Region<'_, P>, out: &mut Vec<f32>) {
         debug_assert_eq!(layout.shape(), image.shape());
-        self.fill_histograms(layout, image);
-        self.collect_blocks(layout, out);
+        let cut = Cut::of(layout);
+        self.memory.fit(layout, cut);
+        out.resize(layout.len(), 0.0);
+        let (bins, norm, memory) = (&self.bins, self.params.norm, &mut self.memory);
+        self.simd.run(Compute { layout, cut, image, bins, norm, memory, out });
     }
+}
 
-    fn fill_histograms<P: Sample>(&mut self, layout: &HogLayout, image: Region<'_, P>) {
-        let ([rows, columns], cell_px) = (layout.cells(), layout.cell_px());
-        let orientations = layout.orientations();
-        self.histograms.clear();
-        self.histograms.resize(rows * columns * orientations, 0.0);
-        self.votes.resize(columns, cell_px, orientations);
-        let cell_rows = self.histograms.chunks_exact_mut(columns * orientations);
-        for (cell_row, histograms) in cell_rows.enumerate() {
-            for y in cell_row * cell_px..(cell_row + 1) * cell_px {
-                gradient::row(image, y, &mut self.votes.dx, &mut self.votes.dy);
-                self.bins.assign(&mut self.votes);
-                cast(&self.votes, histograms);
-            }
-            // Cell sums become means, and bytes become fractions of 255.
-            let unit = 1.0 / (P::WHITE * (cell_px * cell_px) as f32);
-            histograms.iter_mut().for_each(|v| *v *= unit);
+/// How the work on pictures of one size is cut up.
+#[derive(Clone, Copy, Debug)]
+struct Cut {
+    /// Rows of pixels in a section of the strip, sections that are worked on at a time, and their distance in cells.
+    rows: usize,
+    sections: usize,
+    section_cells: usize,
+}
+
+impl Cut {
+    /// Floats that fit into the cache next to the processor, with some room for all else.
+    const NEAR: usize = 6000;
+
+    fn of(layout: &HogLayout) -> Cut {
+        let ([_, columns], cell_px) = (layout.cells(), layout.cell_px());
+        // What is left of the picture, and a column more on both sides, lie between two sections.
+        let section_cells = (layout.shape()[1] + 2).div_ceil(cell_px);
+        if is_point(layout) {
+            // The rows above and below are read again for each section, which counts where cells are small.
+            return Cut { rows: 16, sections: 1, section_cells };
+        }
+        let evenly = (columns * cell_px).is_multiple_of(lanes::WIDTH);
+        let near = Cut::NEAR / ((cell_px + 2) * section_cells * cell_px);
+        Cut { rows: cell_px, sections: if evenly { 1 } else { near.max(1) }, section_cells }
+    }
+}
+
+/// Whether a block is one pixel.
+fn is_point(layout: &HogLayout) -> bool {
+    layout.cell_px() * layout.block_cells() == 1
+}
+
+impl Memory {
+    fn fit(&mut self, layout: &HogLayout, cut: Cut) {
+        let (rows, cell_px) = (layout.cells()[0], layout.cell_px());
+        self.strip.reserve(cut.rows, cut.section_cells * cell_px, cut.sections);
+        self.votes.resize(cell_px);
+        if !is_point(layout) {
+            self.cells.resize(cell_px, rows, cut.section_cells, layout.orientations());
+            self.blocks.resize(layout.block_len(), lanes::Lanes::zero());
         }
     }
+}
 
-    fn collect_blocks(&self, layout: &HogLayout, out: &mut Vec<f32>) {
-        let [block_rows, block_columns] = layout.blocks();
-        let (orientations, block_cells) = (layout.orientations(), layout.block_cells());
-        let stride = layout.cells()[1] * orientations;
-        out.clear();
-        out.reserve(layout.len());
-        if block_cells == 1 {
-            out.extend_from_slice(&self.histograms);
-        } else {
-            for (y, x) in (0..block_rows).flat_map(|y| (0..block_columns).map(move |x| (y, x))) {
-                for row in y..y + block_cells {
-                    let left = row * stride + x * orientations;
-                    out.extend_from_slice(&self.histograms[left..][..block_cells * orientations]);
+/// Writes the HOG of `image` to `out`, which has its length.
+struct Compute<'a, P> {
+    layout: &'a HogLayout,
+    cut: Cut,
+    image: Region<'a, P>,
+    bins: &'a Bins,
+    norm: Norm,
+    memory: &'a mut Memory,
+    out: &'a mut [f32],
+}
+
+impl<P: Sample> Kernel for Compute<'_, P> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let [rows, columns] = self.layout.cells();
+        // Cell sums become means, and bytes become fractions of 255.
+        let unit = 1.0 / (P::WHITE * self.layout.cell_px().pow(2) as f32);
+        let Compute { layout, cut, image, bins, norm, memory, out } = self;
+        let Memory { strip, votes, cells, blocks } = memory;
+        if is_point(layout) {
+            let out = out.chunks_exact_mut(columns * layout.block_len());
+            for (y, out) in out.enumerate() {
+                if y % cut.rows == 0 {
+                    strip.fill(image, y, 1);
                 }
+                points::fill_row(votes, strip, y % cut.rows, (bins, unit, norm), layout, out);
             }
+            return;
         }
-        self.params.norm.apply(out, layout.block_len());
-    }
-}
-
-/// Adds the votes of one row of pixels to the histograms of its row of cells.
-fn cast(votes: &Votes, histograms: &mut [f32]) {
-    for (&weight, &place) in votes.weight.iter().zip(&votes.place) {
-        // Much of a picture is flat; adding nothing would still wait for the sum before it.
-        if weight > 0.0 {
-            histograms[place as usize] += weight;
+        for row in (0..rows).step_by(cut.sections) {
+            let sections = cut.sections.min(rows - row);
+            strip.fill(image, row * cut.rows, sections);
+            cells.fill(row, (sections - 1) * cut.section_cells + columns, votes, strip, bins);
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// A 3×3 picture, as one cell, whose centre has this gradient and no other pixel a slanted one.
-    fn bin_of(dx: i16, dy: i16, orientations: usize, signed: bool) -> usize {
-        let towards = |d: i16| (d.max(0) as u8, (-d).max(0) as u8);
-        let ((right, left), (below, above)) = (towards(dx), towards(dy));
-        let mut pixels = [0; 9];
-        (pixels[1], pixels[3], pixels[5], pixels[7]) = (above, left, right, below);
-        let image = FrameView::new(3, 3, &pixels).expect("3 x 3 pixels");
-        let mut votes = Votes::default();
-        votes.resize(1, 3, orientations);
-        gradient::row(image.region(), 1, &mut votes.dx, &mut votes.dy);
-        Bins::new(orientations, signed).assign(&mut votes);
-        votes.place[1] as usize
-    }
-
-    #[test]
-    fn a_direction_on_a_border_belongs_to_the_bin_that_begins_there() {
-        let eighths = [(9, 0), (9, 9), (0, 9), (-9, 9), (-9, 0), (-9, -9), (0, -9), (9, -9)];
-        for length in [1, 7, 28] {
-            for (eighth, (dx, dy)) in eighths.into_iter().enumerate() {
-                let (dx, dy) = (dx * length, dy * length);
-                assert_eq!(bin_of(dx, dy, 8, true), eighth, "{dx}, {dy}");
-                assert_eq!(bin_of(dx, dy, 4, false), eighth % 4, "{dx}, {dy}");
-            }
-        }
-    }
-
-    #[test]
-    fn signs_count_only_where_asked() {
-        // 30°, 150°, 210° and 330°, in 3 bins of the full turn and of half of it.
-        let directions = [(173, 100), (-173, 100), (-173, -100), (173, -100)];
-        let bins = |signed| directions.map(|(dx, dy)| bin_of(dx, dy, 3, signed));
-        assert_eq!(bins(true), [0, 1, 1, 2]);
-        assert_eq!(bins(false), [0, 2, 0, 2]);
-    }
-
-    #[test]
-    fn pixels_beyond_the_last_whole_cell_have_no_vote() {
-        let params = HogParams { cell: CellSize::Px(4), norm: Norm::None, ..HogParams::default() };
-        let mut hog = Hog::new(params).expect("valid parameters");
-        let mut features = Vec::new();
-        let mut pixels = [0; 49];
-        pixels[5 * 7 + 6] = 255; // seen by the gradients of its neighbours alone, all beyond column 4
-        let image = FrameView::new(7, 7, &pixels).expect("7 x 7 pixels");
-        let layout = hog.compute_bytes_into(image, &mut features).expect("a cell fits");
-        assert_eq!(layout.cells(), [1, 1]);
-        assert_eq!(features, [0.0; 9]);
+        blocks::collect(cells, unit, layout, norm, blocks, out);
     }
 }

@@ -1,52 +1,79 @@
-//! Normalisation of blocks, in place.
+//! Normalisation of blocks, several side by side.
 
 use super::Norm;
+use super::lanes::{Lanes, WIDTH};
 
 /// The small number of scikit-image, here too: a feature below it counts as nothing.
 const EPSILON: f32 = 1e-5;
 /// Where L2-Hys cuts off.
 const CLIP: f32 = 0.2;
+/// One feature of some blocks.
+pub(super) type Feature = Lanes<f32>;
 
 impl Norm {
-    /// Normalises features, block by block.
-    pub(super) fn apply(self, features: &mut [f32], block_len: usize) {
+    /// Normalises blocks of these features.
+    #[inline(always)]
+    pub(super) fn apply(self, features: &mut [Feature]) {
         match self {
             Norm::None => {}
-            Norm::L1 => each(features, block_len, |block| scale(block, l1(block))),
-            Norm::L1Sqrt => each(features, block_len, |block| {
-                scale(block, l1(block));
-                block.iter_mut().for_each(|v| *v = v.sqrt());
-            }),
-            Norm::L2 => each(features, block_len, |block| scale(block, l2(block))),
-            Norm::L2Hys => each(features, block_len, |block| {
-                scale(block, l2(block));
-                block.iter_mut().for_each(|v| *v = v.min(CLIP));
-                scale(block, l2(block));
-            }),
+            Norm::L1 => scale(features, l1(features)),
+            Norm::L1Sqrt => {
+                scale(features, l1(features));
+                for feature in features {
+                    for value in &mut feature.0 {
+                        *value = value.sqrt();
+                    }
+                }
+            }
+            Norm::L2 => scale(features, l2(features)),
+            Norm::L2Hys => {
+                scale(features, l2(features));
+                for feature in &mut *features {
+                    for value in &mut feature.0 {
+                        *value = if *value < CLIP { *value } else { CLIP };
+                    }
+                }
+                scale(features, l2(features));
+            }
         }
     }
 }
 
-fn each(features: &mut [f32], block_len: usize, normalize: impl Fn(&mut [f32])) {
-    // One cell of 9 orientations is the most usual block, and the one that there are the most of:
-    // with its length known, its loops are unrolled.
-    if let (9, (blocks, [])) = (block_len, features.as_chunks_mut::<9>()) {
-        blocks.iter_mut().for_each(|block| normalize(block));
-    } else {
-        features.chunks_exact_mut(block_len).for_each(normalize);
-    }
-}
-
 /// `1 / (‖v‖₁ + ε)`; histograms are never negative.
-fn l1(block: &[f32]) -> f32 {
-    1.0 / (block.iter().sum::<f32>() + EPSILON)
+#[inline(always)]
+fn l1(features: &[Feature]) -> Feature {
+    let mut sums = Feature::zero();
+    for feature in features {
+        for i in 0..WIDTH {
+            sums.0[i] += feature.0[i];
+        }
+    }
+    for sum in &mut sums.0 {
+        *sum = 1.0 / (*sum + EPSILON);
+    }
+    sums
 }
 
 /// `1 / √(‖v‖₂² + ε²)`
-fn l2(block: &[f32]) -> f32 {
-    1.0 / (block.iter().map(|v| v * v).sum::<f32>() + EPSILON * EPSILON).sqrt()
+#[inline(always)]
+fn l2(features: &[Feature]) -> Feature {
+    let mut sums = Feature::zero();
+    for feature in features {
+        for i in 0..WIDTH {
+            sums.0[i] += feature.0[i] * feature.0[i];
+        }
+    }
+    for sum in &mut sums.0 {
+        *sum = 1.0 / (*sum + EPSILON * EPSILON).sqrt();
+    }
+    sums
 }
 
-fn scale(block: &mut [f32], factor: f32) {
-    block.iter_mut().for_each(|v| *v *= factor);
+#[inline(always)]
+fn scale(features: &mut [Feature], factors: Feature) {
+    for feature in features {
+        for i in 0..WIDTH {
+            feature.0[i] *= factors.0[i];
+        }
+    }
 }
