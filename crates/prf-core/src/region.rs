@@ -1,4 +1,4 @@
-//! A rectangle of pixels inside a larger picture, and the two kinds of pixel.
+//! A rectangle of pixels inside a larger picture, the two kinds of pixel, and rows of them one after the other.
 
 /// A pixel's value: a byte, or a float in [0, 1].
 pub(crate) trait Sample: Copy + PartialEq {
@@ -61,5 +61,32 @@ impl<'a, P> Region<'a, P> {
 
     pub(crate) fn row(&self, y: usize) -> &'a [P] {
         &self.pixels[y * self.stride..][..self.width]
+    }
+}
+
+/// A picture whose rows are taken one after the other: one that is there, or one that is made on the way.
+pub(crate) trait Rows {
+    /// White, in the unit of the values; black is 0.
+    const WHITE: f32;
+
+    /// `[height, width]`.
+    fn shape(&self) -> [usize; 2];
+
+    /// Writes row `y`. Rows are asked for from the top on, and none that lies more than two above the lowest so far.
+    fn row_into(&mut self, y: usize, out: &mut [f32]);
+}
+
+impl<P: Sample> Rows for Region<'_, P> {
+    const WHITE: f32 = P::WHITE;
+
+    fn shape(&self) -> [usize; 2] {
+        Region::shape(self)
+    }
+
+    #[inline(always)]
+    fn row_into(&mut self, y: usize, out: &mut [f32]) {
+        for (out, pixel) in out.iter_mut().zip(self.row(y)) {
+            *out = pixel.value();
+        }
     }
 }

@@ -7,7 +7,7 @@
 //! Where neighbours are equal the result is exactly their value: an interpolated flat area has no
 //! gradient at all. Normalisation knows no scale, so HOG would blow up the least rounding.
 
-use crate::region::{Region, Sample};
+use crate::region::{Region, Rows, Sample};
 use crate::simd::{Kernel, Simd};
 use crate::{Error, FrameView, PlaneView};
 
@@ -28,7 +28,7 @@ pub struct Resizer {
     across: Taps,
     down: Taps,
     lines: Lines,
-    /// The source with its width already rescaled, row by row.
+    /// The rows of the source that are worked on, with their width already rescaled; one takes the place of another.
     widened: Vec<f32>,
     output: Vec<f32>,
 }
@@ -42,54 +42,80 @@ impl Resizer {
     pub fn resize(&mut self, image: FrameView<'_>, width: usize, height: usize) -> Result<PlaneView<'_>, Error> {
         let len = width.checked_mul(height).unwrap_or(0);
         crate::frame::check_shape(width, height, len)?;
-        self.rescale(image.region(), [height, width]);
+        let mut output = std::mem::take(&mut self.output);
+        output.resize(len, 0.0);
+        let simd = self.simd;
+        simd.run(Rescale { rows: self.rows(image.region(), [height, width]), output: &mut output });
+        self.output = output;
         PlaneView::new(width, height, &self.output)
     }
 
-    /// The region at `[height, width]`, as floats from 0 (black) to 1 (white).
-    pub(crate) fn rescale<P: Sample>(&mut self, image: Region<'_, P>, [height, width]: [usize; 2]) -> Region<'_, f32> {
+    /// The region at `[height, width]`, made row by row where it is needed, in the unit of bytes: whole numbers until they are mixed,
+    /// so that their differences are exact.
+    pub(crate) fn rows<'a>(&'a mut self, image: Region<'a, u8>, [height, width]: [usize; 2]) -> Rescaled<'a> {
         self.across.prepare(image.width(), width);
         self.down.prepare(image.height(), height);
-        self.widened.resize(image.height().next_multiple_of(ROWS) * width, 0.0);
-        self.output.resize(height * width, 0.0);
-        let Resizer { simd, across, down, lines, widened, output } = self;
-        simd.run(Rescale { image, across, down, lines, widened, output });
-        Region::whole(width, height, &self.output)
+        // As many as three rows of the result lie between, and those that were widened with the last of them.
+        let reach = self.down.count + 2 * image.height().div_ceil(height) + ROWS;
+        let kept = reach.next_multiple_of(ROWS);
+        self.widened.resize(kept * width, 0.0);
+        let Resizer { across, down, lines, widened, .. } = self;
+        Rescaled { image, across, down, lines, widened, kept, ready: 0 }
     }
 }
 
-/// Writes the picture to `output`.
-struct Rescale<'a, P> {
-    image: Region<'a, P>,
+/// Writes all rows to `output`, as floats from 0 to 1.
+struct Rescale<'a> {
+    rows: Rescaled<'a>,
+    output: &'a mut [f32],
+}
+
+impl Kernel for Rescale<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(mut self) {
+        for (y, out) in self.output.chunks_exact_mut(self.rows.across.to).enumerate() {
+            self.rows.row_into(y, out);
+            for value in out {
+                *value /= Rescaled::WHITE;
+            }
+        }
+    }
+}
+
+/// A picture that is rescaled while its rows are taken.
+pub(crate) struct Rescaled<'a> {
+    image: Region<'a, u8>,
     across: &'a Taps,
     down: &'a Taps,
     lines: &'a mut Lines,
     widened: &'a mut [f32],
-    output: &'a mut [f32],
+    /// How many rows of the source are kept widened; row `y` lies at `y % kept`.
+    kept: usize,
+    /// Rows of the source that have been widened.
+    ready: usize,
 }
 
-impl<P: Sample> Kernel for Rescale<'_, P> {
-    type Output = ();
+impl Rows for Rescaled<'_> {
+    const WHITE: f32 = <u8 as Sample>::WHITE;
+
+    fn shape(&self) -> [usize; 2] {
+        [self.down.to, self.across.to]
+    }
 
     #[inline(always)]
-    fn run(self) {
+    fn row_into(&mut self, y: usize, out: &mut [f32]) {
         let width = self.across.to;
-        let mut ready = 0;
-        for (y, out) in self.output.chunks_exact_mut(width).enumerate() {
-            // Just before it is needed, so that it is still in the nearest cache then.
-            while ready < self.down.starts[y] + self.down.count {
-                let widened = &mut self.widened[ready * width..][..ROWS * width];
-                // Bytes stay whole numbers until they have been mixed, so that their differences are exact.
-                self.lines.fill(self.image, ready);
-                self.across.mix_pixels(self.lines, widened);
-                for value in widened {
-                    *value /= P::WHITE;
-                }
-                ready += ROWS;
-            }
-            let widened = Region::whole(width, self.widened.len() / width, self.widened);
-            self.down.mix_rows(widened, y, out);
+        while self.ready < self.down.starts[y] + self.down.count {
+            let place = self.ready % self.kept * width;
+            self.lines.fill(self.image, self.ready);
+            self.across.mix_pixels(self.lines, &mut self.widened[place..][..ROWS * width]);
+            self.ready += ROWS;
         }
+        debug_assert!(self.ready <= self.down.starts[y] + self.kept, "row {y} is gone");
+        let (widened, kept) = (&*self.widened, self.kept);
+        self.down.mix_rows(|row| &widened[row % kept * width..][..width], y, out);
     }
 }
 
@@ -109,7 +135,7 @@ struct Lines {
 impl Lines {
     /// Takes the rows from this one on; behind the last row it comes again.
     #[inline(always)]
-    fn fill<P: Sample>(&mut self, image: Region<'_, P>, first: usize) {
+    fn fill(&mut self, image: Region<'_, u8>, first: usize) {
         self.columns.resize(image.width(), [0.0; ROWS]);
         let [above, below] = [first, first + 1].map(|y| image.row(y.min(image.height() - 1)));
         for ((column, above), below) in self.columns.iter_mut().zip(above).zip(below) {
@@ -198,17 +224,17 @@ impl Taps {
 
     /// Row `i` of the result, of whole rows.
     #[inline(always)]
-    fn mix_rows(&self, rows: Region<'_, f32>, i: usize, out: &mut [f32]) {
+    fn mix_rows<'a>(&self, row: impl Fn(usize) -> &'a [f32], i: usize, out: &mut [f32]) {
         let start = self.starts[i];
-        let first = rows.row(start);
+        let first = row(start);
         let mut rounds = (1..).zip(self.weights.chunks_exact(self.to));
         let Some((_, weights)) = rounds.next() else { return out.copy_from_slice(first) };
-        for ((out, pixel), first) in out.iter_mut().zip(rows.row(start + 1)).zip(first) {
+        for ((out, pixel), first) in out.iter_mut().zip(row(start + 1)).zip(first) {
             *out = first + weights[i] * (pixel - first);
         }
         for (k, weights) in rounds {
-            let (row, weight) = (rows.row(start + k), weights[i]);
-            for ((out, pixel), first) in out.iter_mut().zip(row).zip(first) {
+            let weight = weights[i];
+            for ((out, pixel), first) in out.iter_mut().zip(row(start + k)).zip(first) {
                 *out += weight * (pixel - first);
             }
         }

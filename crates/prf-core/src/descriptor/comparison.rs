@@ -119,7 +119,7 @@ fn hog_at(hog: &mut Hog, resizer: &mut Resizer, layout: &HogLayout, template: Re
     if template.shape() == layout.shape() {
         hog.compute(layout, template, out);
     } else {
-        hog.compute(layout, resizer.rescale(template, layout.shape()), out);
+        hog.compute(layout, resizer.rows(template, layout.shape()), out);
     }
 }
 

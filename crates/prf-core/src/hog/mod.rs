@@ -23,7 +23,7 @@ use normalize::Feature;
 use strip::Strip;
 use votes::Votes;
 
-use crate::region::{Region, Sample};
+use crate::region::Rows;
 use crate::simd::{Kernel, Simd};
 use crate::{Error, FrameView, PlaneView};
 
@@ -108,7 +108,7 @@ impl Hog {
     }
 
     /// The HOG of an image whose shape and orientations are those of `layout`.
-    pub(crate) fn compute<P: Sample>(&mut self, layout: &HogLayout, image: Region<'_, P>, out: &mut Vec<f32>) {
+    pub(crate) fn compute<R: Rows>(&mut self, layout: &HogLayout, image: R, out: &mut Vec<f32>) {
         debug_assert_eq!(layout.shape(), image.shape());
         let cut = Cut::of(layout);
         self.memory.fit(layout, cut);
@@ -163,31 +163,31 @@ impl Memory {
 }
 
 /// Writes the HOG of `image` to `out`, which has its length.
-struct Compute<'a, P> {
+struct Compute<'a, R> {
     layout: &'a HogLayout,
     cut: Cut,
-    image: Region<'a, P>,
+    image: R,
     bins: &'a Bins,
     norm: Norm,
     memory: &'a mut Memory,
     out: &'a mut [f32],
 }
 
-impl<P: Sample> Kernel for Compute<'_, P> {
+impl<R: Rows> Kernel for Compute<'_, R> {
     type Output = ();
 
     #[inline(always)]
     fn run(self) {
         let [rows, columns] = self.layout.cells();
         // Cell sums become means, and bytes become fractions of 255.
-        let unit = 1.0 / (P::WHITE * self.layout.cell_px().pow(2) as f32);
-        let Compute { layout, cut, image, bins, norm, memory, out } = self;
+        let unit = 1.0 / (R::WHITE * self.layout.cell_px().pow(2) as f32);
+        let Compute { layout, cut, mut image, bins, norm, memory, out } = self;
         let Memory { strip, votes, cells, blocks } = memory;
         if is_point(layout) {
             let out = out.chunks_exact_mut(columns * layout.block_len());
             for (y, out) in out.enumerate() {
                 if y % cut.rows == 0 {
-                    strip.fill(image, y, 1);
+                    strip.fill(&mut image, y, 1);
                 }
                 points::fill_row(votes, strip, y % cut.rows, (bins, unit, norm), layout, out);
             }
@@ -195,7 +195,7 @@ impl<P: Sample> Kernel for Compute<'_, P> {
         }
         for row in (0..rows).step_by(cut.sections) {
             let sections = cut.sections.min(rows - row);
-            strip.fill(image, row * cut.rows, sections);
+            strip.fill(&mut image, row * cut.rows, sections);
             cells.fill(row, (sections - 1) * cut.section_cells + columns, votes, strip, bins);
         }
         blocks::collect(cells, unit, layout, norm, blocks, out);

@@ -1,7 +1,7 @@
 //! Some rows of a picture as floats, with a border that makes every gradient a plain difference.
 
 use super::lanes::WIDTH;
-use crate::region::{Region, Sample};
+use crate::region::Rows;
 
 /// Floats of a cache line.
 const LINE: usize = 16;
@@ -32,8 +32,9 @@ impl Strip {
 
     /// Fills so many sections with rows of the picture, in its own unit, from `top` on. Rows below it are made up.
     #[inline(always)]
-    pub(super) fn fill<P: Sample>(&mut self, image: Region<'_, P>, top: usize, sections: usize) {
-        let last = image.height() - 1;
+    pub(super) fn fill<R: Rows>(&mut self, image: &mut R, top: usize, sections: usize) {
+        let [height, width] = image.shape();
+        let last = height - 1;
         for (section, i) in (0..sections).flat_map(|section| (0..self.rows + 2).map(move |i| (section, i))) {
             // Counted from 1.
             let y = match top + section * self.rows + i {
@@ -42,7 +43,10 @@ impl Strip {
                 y => y - 1,
             };
             let begin = self.origin - 1 + i * self.stride + section * self.section_px;
-            widen(image.row(y), &mut self.pixels[begin..][..image.width() + 2]);
+            let out = &mut self.pixels[begin..][..width + 2];
+            image.row_into(y, &mut out[1..=width]);
+            out[0] = out[2.min(width)];
+            out[width + 1] = out[width - 1];
         }
     }
 
@@ -52,14 +56,4 @@ impl Strip {
         let rows = &self.pixels[self.origin - 1 + y * self.stride..];
         [&rows[1..], &rows[self.stride..], &rows[2 * self.stride + 1..]]
     }
-}
-
-#[inline(always)]
-fn widen<P: Sample>(row: &[P], out: &mut [f32]) {
-    for (out, pixel) in out[1..].iter_mut().zip(row) {
-        *out = pixel.value();
-    }
-    let width = row.len();
-    out[0] = out[2.min(width)];
-    out[width + 1] = out[width - 1];
 }

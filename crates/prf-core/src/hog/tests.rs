@@ -1,6 +1,7 @@
 //! Bins by hand, and every instruction set of this machine.
 
 use super::*;
+use crate::region::Region;
 
 /// A 3×3 picture, as one cell, whose centre has this gradient and no other pixel a slanted one.
 fn bin_of(dx: i16, dy: i16, orientations: usize, signed: bool) -> usize {
