@@ -102,7 +102,7 @@ class Comparison:
     """exp(-distance) of two templates' HOGs; the goal's are kept for every size."""
 
     def __init__(self, case, goal):
-        self.fraction, self.block_cells = case["hog"]["cell"]["fraction"], case["hog"]["block_cells"]
+        self.cell, self.block_cells = case["hog"]["cell"], case["hog"]["block_cells"]
         self.goal, _ = crop(goal)
         self.goal_features, self.descriptors = {}, {}
 
@@ -119,7 +119,7 @@ class Comparison:
         height, width = shape
         if picture.shape != shape:
             picture = cv2.resize(picture, (width, height), interpolation=cv2.INTER_LINEAR)
-        cell = max(1, int(self.fraction * height))
+        cell = self.cell["px"] if "px" in self.cell else max(1, int(self.cell["fraction"] * height))
         rows, columns = height // cell, width // cell
         if shape not in self.descriptors:
             self.descriptors[shape] = hog_descriptor(columns * cell, rows * cell, cell, self.block_cells)

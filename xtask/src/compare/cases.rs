@@ -97,7 +97,11 @@ pub fn perception_cases() -> (Vec<Case>, Gallery) {
     for descriptor in ["direct", "window", "motion"] {
         for (frame, window) in [((84, 84), (28, 28)), ((160, 210), (64, 64)), ((288, 512), (52, 100))] {
             for scene in ["breakout", "texture"] {
-                cases.push(reward(&mut gallery, descriptor, scene, frame, window));
+                // What a window or a movement is cropped to can be too small for OpenCV's grid.
+                if descriptor == "direct" {
+                    cases.push(reward(&mut gallery, (descriptor, Grid::OpenCv), scene, frame, window));
+                }
+                cases.push(reward(&mut gallery, (descriptor, Grid::Paper), scene, frame, window));
             }
         }
     }
@@ -164,9 +168,18 @@ fn motion(gallery: &mut Gallery, (width, height): (usize, usize)) -> Case {
     case("Motion template", title, format!("motion-{width}x{height}"), vec![opencv(1.0, Check::Bits)], work)
 }
 
+/// Cells and blocks of a reward.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Grid {
+    /// Those that `HOGDescriptor` has by itself: cells of 8 px, 2×2 blocks.
+    OpenCv,
+    /// The paper's cell of each descriptor, and blocks of one cell, our default.
+    Paper,
+}
+
 fn reward(
     gallery: &mut Gallery,
-    descriptor: &str,
+    (descriptor, grid): (&str, Grid),
     scene: &str,
     (width, height): (usize, usize),
     window: (usize, usize),
@@ -181,15 +194,20 @@ fn reward(
         _ => (0.05, motion_goal(&frames)),
     };
     let name = format!("{descriptor}-{scene}-{width}x{height}");
+    let (cell, block_cells, words) = match grid {
+        Grid::OpenCv => (json!({ "px": 8 }), 2, "8 px, 2×2".to_owned()),
+        Grid::Paper => (json!({ "fraction": cell }), 1, format!("{cell} h, 1×1")),
+    };
     let work = json!({
         "work": "reward",
         "descriptor": descriptor,
         "frames": gallery.add(&format!("{scene}-episode"), frames),
         "goal": gallery.add(&format!("goal-{name}"), goal),
-        "hog": { "orientations": 9, "cell": { "fraction": cell }, "block_cells": 1, "norm": "l2-hys" },
+        "hog": { "orientations": 9, "cell": cell, "block_cells": block_cells, "norm": "l2-hys" },
         "motion": motion_params(),
     });
-    let title = format!("{descriptor}, {width}×{height}, {scene}");
+    let title = format!("{descriptor}, {width}×{height}, {scene}, {words}");
+    let name = format!("{name}-{block_cells}");
     // The same boxes are compared, and as many features; OpenCV's features themselves are others.
     case("Reward", title, name, vec![opencv(5.0, Check::Bits)], work)
 }
