@@ -2,10 +2,10 @@
 
 use std::ops::Range;
 
-use super::bins::Bins;
+use super::bins::{BINS, Bins};
 use super::lanes::{Lanes, WIDTH};
 use super::strip::Strip;
-use super::votes::{BINS, Votes};
+use super::votes::Votes;
 
 /// Cells that are written at a time where there are not more.
 const FEW: usize = 16;
@@ -53,12 +53,15 @@ impl Cells {
         let at_a_time = WIDTH / self.cell_px;
         for cell in (0..count).step_by(at_a_time) {
             let any = votes.take(strip, 0..self.cell_px, cell * self.cell_px, bins);
-            for (i, some) in self.values.chunks_mut(BINS * self.bin_stride).enumerate() {
-                let mut counts = [Lanes::zero(); BINS];
+            // From the last bin on, as a bin has what reached it and not the next.
+            let mut next = Lanes::zero();
+            for (i, some) in self.values.chunks_mut(BINS * self.bin_stride).enumerate().rev() {
+                let mut sums = [Lanes::zero(); BINS];
                 if any {
-                    counts = votes.count(i * BINS);
+                    sums = votes.reached(bins.from(i * BINS));
+                    next = within(&mut sums, &next);
                 }
-                for (cells, sums) in some.chunks_exact_mut(self.bin_stride).zip(&mut counts) {
+                for (cells, sums) in some.chunks_exact_mut(self.bin_stride).zip(&mut sums) {
                     if any {
                         self.fold.apply(sums);
                     }
@@ -76,7 +79,9 @@ impl Cells {
                 votes.take(strip, 0..self.cell_px, i * self.cell_px + x, bins);
                 for (bin, cells) in self.values.chunks_exact_mut(self.bin_stride).enumerate() {
                     let mut sum = if x == 0 { 0.0 } else { cells[cell] };
-                    for value in &votes.count(bin)[0].0[..WIDTH.min(self.cell_px - x)] {
+                    let mut sums = votes.reached(bins.from(bin));
+                    within(&mut sums, &Lanes::zero());
+                    for value in &sums[0].0[..WIDTH.min(self.cell_px - x)] {
                         sum += value;
                     }
                     cells[cell] = sum;
@@ -84,6 +89,19 @@ impl Cells {
             }
         }
     }
+}
+
+/// Takes from the votes that reached each bin those that reached the next one, and returns those that reached the first.
+#[inline(always)]
+fn within(sums: &mut [Lanes<f32>; BINS], next: &Lanes<f32>) -> Lanes<f32> {
+    let reached = sums[0];
+    for k in 0..BINS {
+        let next = if k + 1 < BINS { sums[k + 1] } else { *next };
+        for i in 0..WIDTH {
+            sums[k].0[i] -= next.0[i];
+        }
+    }
+    reached
 }
 
 /// Writes `count` cells or some more. What lies beyond the last of a row is overwritten by the next row.

@@ -27,7 +27,8 @@ pub(super) fn fill_row(
         // The features that are 0 change no norm.
         norm.apply(std::slice::from_mut(&mut feature));
         out.fill(0.0);
-        let votes = feature.0.iter().zip(&votes.places[0].0);
+        let places = bins.places(&votes.directions[0]);
+        let votes = feature.0.iter().zip(&places.0);
         for (block, (&value, &place)) in out.chunks_exact_mut(len).zip(votes) {
             block[place as usize] = value;
         }
