@@ -69,14 +69,24 @@ fn rows_are_found_by_order_by_name_and_by_number() {
     let write = |name: &str, text: String| fs::write(path.join(name), text).expect("the folder is ours");
     write("order.csv", "score\n".to_owned() + &rows(&|_| String::new()));
     write("name.csv", "frame,score\n".to_owned() + &rows(&|bars| format!("{bars}.png,")));
-    write("number.csv", "score,Frame\n".to_owned() + &(1..=9).map(|n| format!("{n}, {}\n", n - 1)).collect::<String>());
-    write("few.csv", "frame,score\n7.png,7\n2.png,2\n5.png,\n".to_owned());
+    write("stem.csv", "score,Frame\n".to_owned() + &(1..=9).rev().map(|n| format!("{n}, {n}\n")).collect::<String>());
+    write("few.csv", "frame,score\n7.png,7\n2.png,2\n5.png,\n9.png,8\n".to_owned());
     let judged = |csv: &str| record(path, &["inspect", "goal.png", "frames", "--scores", csv]);
     let order = judged("order.csv");
     assert_eq!(order["rank_correlation"], 1.0);
-    assert_eq!((judged("name.csv"), judged("number.csv")), (order.clone(), order));
+    assert_eq!((judged("name.csv"), judged("stem.csv")), (order.clone(), order));
     let few = judged("few.csv");
     assert_eq!((&few["frames"], &few["rank_correlation"]), (&Value::from(3), &Value::from(1.0)));
+
+    // The frames of an animation have numbers.
+    flappy::put_into(path);
+    let table = fs::read_to_string(path.join("scores.csv")).expect("a table");
+    let mut numbered: Vec<String> =
+        table.lines().skip(1).enumerate().map(|(number, line)| format!("{number},{line}\n")).collect();
+    numbered.reverse();
+    write("numbered.csv", "frame,score,success\n".to_owned() + &numbered.concat());
+    let args: Vec<&str> = FLAPPY.iter().map(|&word| if word == "scores.csv" { "numbered.csv" } else { word }).collect();
+    assert_eq!(record(path, &args), record(path, &FLAPPY));
 }
 
 #[test]
@@ -93,6 +103,12 @@ fn a_threshold_makes_successes_of_scores() {
     let judged = record(folder.path(), &[&FLAPPY[..], &GOOD, &args].concat());
     assert!(number(&judged, "success_auc") > 0.7, "{judged}");
     assert!(record(folder.path(), &FLAPPY).get("success_auc").is_none());
+    let far = [&FLAPPY[..], &["--success-at", "1"]].concat();
+    let told = "--success-at 1 tells no frames apart: the highest score is 0";
+    prf(folder.path()).args(far).assert().success().stderr(contains(told));
+    for wrong in [&["--success-at", "nan"][..], &["--success-at", "1", "--goal-only"], &["--sample", "3"]] {
+        prf(folder.path()).args(["inspect", "goal.png"]).args(wrong).assert().code(2);
+    }
 }
 
 #[test]
@@ -167,7 +183,7 @@ fn bad_tables_are_refused_with_their_line() {
         ("score,success\n1\n", "scores.csv: CSV error: record 1"),
         ("score\n1\n2\n", "scores.csv has lines for 2 frames, expected 400: one for each, in their order"),
         ("frame,score\na.png,1\na.png,2\n", "scores.csv:3: the frame \"a.png\" has a line already"),
-        ("frame,score\na.png,1\n", "none of the 1 frames that scores.csv names is among the 400"),
+        ("frame,score\n3,1\n7,2\n400,1\n", "scores.csv has a line for \"400\", which is none of the 400 frames"),
     ] {
         fs::write(folder.path().join("scores.csv"), text).expect("the folder is ours");
         prf(folder.path()).args(FLAPPY).assert().code(2).stdout("").stderr(contains(told));
@@ -192,7 +208,7 @@ fn goals_and_configs_that_cannot_be_judged_say_why() {
     let folder = folder();
     let path = folder.path();
     pictures::flat(&path.join("flat.png"), 90);
-    prf(path).args(["inspect", "flat.png"]).assert().code(2).stderr(contains("the goal is one even grey"));
+    prf(path).args(["inspect", "flat.png"]).assert().code(2).stderr(contains("the goal shows nothing of 4 px or more"));
     prf(path).args(["inspect", "nowhere.png"]).assert().code(1).stderr(contains("nowhere.png: no such file"));
     prf(path)
         .args(["inspect", "nowhere.toml"])
@@ -206,11 +222,15 @@ fn goals_and_configs_that_cannot_be_judged_say_why() {
         .code(2)
         .stderr(contains("`reward.source` is \"variable\""));
     breakout(path);
-    prf(path).args(["inspect", "breakout.toml", "--goal-only"]).assert().code(2).stderr(contains("one even grey"));
+    prf(path)
+        .args(["inspect", "breakout.toml", "--goal-only"])
+        .assert()
+        .code(2)
+        .stderr(contains("the goal shows nothing of 4 px or more"));
     fs::create_dir(path.join("demo")).expect("the folder is ours");
     (1..=3).for_each(|bars| pictures::bars(&path.join(format!("demo/{bars}.png")), bars));
     let large = ["inspect", "screen.png", "demo", "--demo", "--descriptor", "window"];
-    prf(path).args(large).assert().code(2).stderr(contains("84x84").and(contains("40x40")));
+    prf(path).args(large).assert().code(1).stderr(contains("1.png").and(contains("84x84")).and(contains("40x40")));
 }
 
 #[test]
@@ -235,4 +255,56 @@ fn frames_that_cannot_be_read_are_left_out_with_exit_code_3() {
         .assert()
         .code(1)
         .stderr(contains("no frame could be read"));
+    // A shell's `frames/*.png` is the same.
+    let files = (1..=6).map(|bars| format!("frames/{bars}.png"));
+    prf(path)
+        .args(["inspect", "goal.png", "--scores", "scores.csv"])
+        .args(files)
+        .assert()
+        .code(3)
+        .stdout(contains("1.000").and(contains("judged by 5 of 5 frames")));
+}
+
+#[test]
+fn lines_behind_a_cut_animation_are_not_guessed() {
+    let folder = folder();
+    let path = folder.path();
+    let whole = fs::read(path.join("frames.png")).expect("an animation");
+    fs::write(path.join("cut.png"), &whole[..whole.len() / 2]).expect("the folder is ours");
+    // The lines of the frames that were read are certain, and the table is not blamed for the others.
+    let cut: Vec<&str> = FLAPPY.iter().map(|&word| if word == "frames.png" { "cut.png" } else { word }).collect();
+    prf(path).args(&cut).assert().code(3).stdout(contains("frames with scores")).stderr(contains("cut.png"));
+    let behind = [&cut[..3], &["frames.png"], &cut[3..]].concat();
+    let told = "which line of scores.csv belongs to frames.png can't be told";
+    prf(path).args(behind).assert().code(1).stderr(contains(told));
+}
+
+#[test]
+fn what_cannot_be_moved_is_not_called_misleading() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let ring = image::GrayImage::from_fn(40, 40, |x, y| {
+        image::Luma([if x == 0 || y == 0 || x == 39 || y == 39 { 200 } else { 0 }])
+    });
+    ring.save(folder.path().join("ring.png")).expect("the folder is ours");
+    prf(folder.path())
+        .args(["inspect", "ring.png"])
+        .assert()
+        .success()
+        .stdout(contains("weak: nothing in the goal can be moved").and(contains("displaced over absent").not()));
+}
+
+#[test]
+fn pictures_one_by_one_are_one_movement() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path();
+    fs::create_dir(path.join("move")).expect("the folder is ours");
+    for bars in 1..=9 {
+        pictures::bars(&path.join(format!("move/{bars}.png")), bars);
+    }
+    let files: Vec<String> = (1..=9).map(|bars| format!("move/{bars}.png")).collect();
+    let files: Vec<&str> = files.iter().map(String::as_str).collect();
+    let motion = ["inspect", "move", "--descriptor", "motion", "--demo"];
+    let one_by_one = record(path, &[&motion[..], &files].concat());
+    assert_eq!(one_by_one, record(path, &[&motion[..], &["move"]].concat()));
+    assert_ne!(one_by_one["verdict"], "blind");
 }

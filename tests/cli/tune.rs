@@ -61,8 +61,8 @@ fn what_it_recommends_is_good_and_is_taken_as_it_is() {
     assert!(auc >= Some(0.9) && rho >= Some(0.8), "{judged}");
     let score = stdout(path, &["score", "--config", "reward.toml", &goal, "screen.png"]);
     assert!(score.starts_with("screen.png: reward 1.000000"), "{score}");
-    // The printed one is TOML as well.
-    assert!(text.parse::<toml::Table>().is_ok(), "{text}");
+    assert_eq!(text, written, "what is printed is what is written");
+    assert!(text.contains("# prf goal crop screen.png --rect 7,24,32,36 --out reward-32x36.png"), "{text}");
 
     let svg = fs::read_to_string(path.join("all.svg")).expect("it was asked for");
     let document = roxmltree::Document::parse(&svg).expect("XML");
@@ -152,7 +152,34 @@ fn goals_screens_and_options_that_do_not_fit_are_refused() {
         .code(2)
         .stderr(contains("--screen is for --descriptor window"));
     pictures::flat(&path.join("flat.png"), 90);
-    prf(path).args(["tune", "flat.png"]).assert().code(2).stderr(contains("the goal is one even grey"));
+    prf(path).args(["tune", "flat.png"]).assert().code(2).stderr(contains("the goal shows nothing of 4 px or more"));
+    prf(path).args(["tune", "goal.png", "--out", "reward.txt"]).assert().code(2).stderr(contains("ends in .toml"));
+    prf(path).args(["init", "breakout"]).assert().success();
+    let before = fs::read(path.join("breakout.toml")).expect("it was written");
+    prf(path)
+        .args(["tune", "breakout.toml", "--out", "breakout.toml", "--force"])
+        .assert()
+        .code(2)
+        .stderr(contains("--out: breakout.toml would lose all but its [reward]"));
+    assert_eq!(fs::read(path.join("breakout.toml")).expect("it is there"), before);
+}
+
+#[test]
+fn a_screen_is_searched_for_the_goal_itself() {
+    let folder = folder();
+    let path = folder.path();
+    // A dimmer copy of the goal comes first, and correlation takes both for the same.
+    let goal = image::open(path.join("goal.png")).expect("a picture").to_luma8();
+    let mut screen = image::GrayImage::new(120, 84);
+    for (x, y, &image::Luma([value])) in goal.enumerate_pixels() {
+        screen.put_pixel(x + 5, y + 5, image::Luma([value / 2]));
+        screen.put_pixel(x + 60, y + 30, image::Luma([value]));
+    }
+    screen.save(path.join("two.png")).expect("the folder is ours");
+    let args = ["tune", "goal.png", "--descriptor", "window", "--screen", "two.png", "--format", "json"];
+    let text = stdout(path, &args);
+    let first: Value = serde_json::from_str(text.lines().next().expect("a line")).expect("JSON");
+    assert_eq!((first["window"]["x"].as_u64(), first["window"]["y"].as_u64()), (Some(60), Some(30)));
 }
 
 #[test]

@@ -135,7 +135,7 @@ pub(crate) struct ScoreArgs {
     #[arg(long, value_name = "FILE.png")]
     pub(crate) explain: Option<PathBuf>,
     /// Draw the reward over frames, or over time where all frames have one; unreadable frames are gaps
-    #[arg(long, value_name = "FILE.svg", value_parser = svg_path())]
+    #[arg(long, value_name = "FILE.svg", value_parser = ending_in("svg"))]
     pub(crate) plot: Option<PathBuf>,
     /// Refuse sources of more frames than this
     #[arg(long, value_name = "N", default_value_t = 100_000)]
@@ -349,11 +349,11 @@ pub(crate) struct GoalOut {
     pub(crate) force: bool,
 }
 
-/// Programs go by the name's ending, so an SVG under another one would not open.
-fn svg_path() -> impl TypedValueParser<Value = PathBuf> {
-    PathBufValueParser::new().try_map(|path: PathBuf| {
-        let is_svg = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("svg"));
-        if is_svg { Ok(path) } else { Err("expected a name that ends in .svg") }
+/// Programs go by the name's ending, so a file under another one would not open.
+fn ending_in(expected: &'static str) -> impl TypedValueParser<Value = PathBuf> {
+    PathBufValueParser::new().try_map(move |path: PathBuf| {
+        let is_such = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case(expected));
+        if is_such { Ok(path) } else { Err(format!("expected a name that ends in .{expected}")) }
     })
 }
 

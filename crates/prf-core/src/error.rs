@@ -85,8 +85,8 @@ pub enum Error {
 
     /// A goal shows nothing that could be moved or taken away, so it can't be judged by itself.
     #[error(
-        "the goal is one even grey, expected one that shows something on an even background; judge the reward by frames \
-         with scores or by a demonstration instead"
+        "the goal shows nothing of 4 px or more that differs from its background by more than 12, expected something \
+         that can be moved; judge the reward by frames with scores or by a demonstration instead"
     )]
     NothingToAlter,
 

@@ -4,7 +4,7 @@ use prf_core::{Error as CoreError, Footage, Frame, Label};
 
 use crate::players::{Oracle, Player, Random, play_episode};
 use crate::rng::{ChaCha8Rng, below, stream, unit_f32};
-use crate::{EnvConfig, Environment, Error, registry};
+use crate::{EnvConfig, Environment, Error, Step, registry};
 
 /// How often the clumsy player does something at random.
 const CLUMSY: f32 = 0.2;
@@ -42,7 +42,7 @@ pub fn survey(
     Ok(())
 }
 
-/// `share` frames, evenly spread over a player's episodes.
+/// `share` frames, evenly spread over a player's episodes, and the last of each.
 fn take(
     config: &EnvConfig,
     player: &mut dyn Player,
@@ -61,11 +61,12 @@ fn take(
     let mut index = 0;
     for &seed in seeds {
         footage.begin();
-        play(world.as_mut(), player, seed, |world, score| {
+        play(world.as_mut(), player, seed, |world, step| {
             world.draw_into(&mut frame);
-            let is_taken = index % stride == 0;
+            // The last frame may be the only one that shows the finished task.
+            let is_taken = index % stride == 0 || step.status.is_over();
             index += 1;
-            if is_taken { footage.observe(frame.view(), label(score)) } else { footage.pass(frame.view()) }
+            if is_taken { footage.observe(frame.view(), label(step.score)) } else { footage.pass(frame.view()) }
         })?;
     }
     Ok(())
@@ -76,18 +77,18 @@ fn episode_seed(seed: u64, index: u64) -> u64 {
     below(&mut rng, 1 << 53) as u64
 }
 
-/// Plays an episode and shows the world after each step, with the score.
+/// Plays an episode and shows the world after each step.
 fn play(
     world: &mut dyn Environment,
     player: &mut dyn Player,
     seed: u64,
-    mut look: impl FnMut(&dyn Environment, f32) -> Result<(), CoreError>,
+    mut look: impl FnMut(&dyn Environment, Step) -> Result<(), CoreError>,
 ) -> Result<(), Error> {
     world.reset(seed);
     player.begin(seed);
     loop {
         let step = world.step(player.action(world))?;
-        look(world, step.score)?;
+        look(world, step)?;
         if step.status.is_over() {
             return Ok(());
         }
@@ -144,7 +145,7 @@ mod tests {
         let scores: Vec<f64> = footage.labels().iter().filter_map(|label| label.score).collect();
         assert_eq!(scores.len(), footage.frames().len());
         assert!(scores.contains(&0.0));
-        assert!(scores.iter().any(|&score| score > 57.0), "the wall is cleared");
+        assert!(scores.contains(&60.0), "the wall is cleared: {:?}", scores.last());
     }
 
     #[test]
@@ -164,7 +165,7 @@ mod tests {
         let evidence = footage.scored(&DescriptorParams::Direct, &goal).expect("scores differ");
         let judged = evidence.sweep(&settings(&goal, params), NonZero::<usize>::MIN).expect("settings fit");
         assert_ne!(judged[0].verdict, Verdict::Good, "{:?}", judged[0]);
-        let best = recommend(&judged).expect("there is a good one");
+        let best = &judged[recommend(&judged).expect("there is a good one")];
         assert_eq!((best.params.hog.norm, best.params.hog.block_cells, best.cell_px), (Norm::L2, 1, 2));
         assert!(
             best.figure(FigureKind::Rank) > Some(0.95) && best.figure(FigureKind::EarlyRank) > Some(0.85),

@@ -4,14 +4,14 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::{FORMAT_HELP, RewardArgs, svg_path};
+use super::{FORMAT_HELP, RewardArgs, ending_in};
 use crate::printer::Format;
 
 pub(super) const HELP: &str = "\
 A reward is judged by what is known of frames, whichever there is:
   a world        the [env] of a config: frames of a random, a clumsy and the best player, with their scores
-  --scores FILE  a CSV beside the frames, a line for each in their order, or found by a column `frame` (a file's name, or a number from 0):
-                 `score`, the higher the better, and `success`, 1 or 0; either may be empty
+  --scores FILE  a CSV beside the frames, a line for each in their order, or found by a column `frame` (a file's name, or the number
+                 from 0 of an animation's or a video's frame): `score`, the higher the better, and `success`, 1 or 0; either may be empty
   --demo         each source of frames is a demonstration that ends at the goal
   the goal alone its things are displaced, taken away, scaled and covered, and noise is added: a good reward falls steadily
                  with displacement, and gives less for an absent thing than for a displaced one
@@ -35,10 +35,10 @@ pub(crate) struct EvidenceArgs {
     #[arg(long, conflicts_with = "frames")]
     pub(crate) goal_only: bool,
     /// Frames of at least this score are successes
-    #[arg(long, value_name = "SCORE", allow_negative_numbers = true)]
+    #[arg(long, value_name = "SCORE", allow_negative_numbers = true, value_parser = parse_score, conflicts_with_all = ["demo", "goal_only"])]
     pub(crate) success_at: Option<f64>,
-    /// Judge by about this many frames, spread evenly
-    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(3..=100_000))]
+    /// Judge by up to this many frames, spread evenly
+    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(50..=100_000))]
     pub(crate) sample: u32,
     /// The seed of the world's episodes
     #[arg(long, value_name = "N", default_value_t = 0)]
@@ -47,7 +47,7 @@ pub(crate) struct EvidenceArgs {
     #[arg(long, value_name = "N", default_value_t = 100_000)]
     pub(crate) max_frames: u64,
     /// Draw the frames of the highest and the lowest rewards side by side
-    #[arg(long, value_name = "FILE.png")]
+    #[arg(long, value_name = "FILE.png", value_parser = ending_in("png"))]
     pub(crate) picture: Option<PathBuf>,
     #[arg(long, value_enum, default_value_t = Format::Text, help = FORMAT_HELP)]
     pub(crate) format: Format,
@@ -58,7 +58,7 @@ pub(crate) struct InspectArgs {
     #[command(flatten)]
     pub(crate) evidence: EvidenceArgs,
     /// Draw the rewards over what is known of the frames
-    #[arg(long, value_name = "FILE.svg", value_parser = svg_path())]
+    #[arg(long, value_name = "FILE.svg", value_parser = ending_in("svg"))]
     pub(crate) plot: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) reward: RewardArgs,
@@ -72,14 +72,19 @@ pub(crate) struct TuneArgs {
     #[arg(long, value_name = "FILE.png")]
     pub(crate) screen: Option<PathBuf>,
     /// Write the recommended [reward] to a file, and a new window's picture beside it
-    #[arg(long, value_name = "FILE.toml")]
+    #[arg(long, value_name = "FILE.toml", value_parser = ending_in("toml"))]
     pub(crate) out: Option<PathBuf>,
     /// Write over files that are there already
     #[arg(long, requires = "out")]
     pub(crate) force: bool,
     /// Draw tables of all settings
-    #[arg(long, value_name = "FILE.svg", value_parser = svg_path())]
+    #[arg(long, value_name = "FILE.svg", value_parser = ending_in("svg"))]
     pub(crate) plot: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) reward: RewardArgs,
+}
+
+fn parse_score(text: &str) -> Result<f64, String> {
+    let score = text.parse().ok().filter(|score: &f64| score.is_finite());
+    score.ok_or_else(|| "expected a number".to_owned())
 }

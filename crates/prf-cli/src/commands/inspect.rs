@@ -22,6 +22,9 @@ pub(crate) fn run(args: &InspectArgs, printer: &mut Printer) -> Result<ExitStatu
     let misfit = |error: prf_core::Error| CliError::misuse(format!("{}: {error}", subject.goal_path.display()));
     let judgement = evidence.judge(params).map_err(misfit)?;
     report(&subject, &known, &evidence, &judgement, printer)?;
+    if args.evidence.picture.is_none() && args.plot.is_none() {
+        return Ok(known.status());
+    }
     let headline = headline(&subject, &judgement);
     let distances = evidence.distances(params)?;
     if let Some(path) = &args.evidence.picture {

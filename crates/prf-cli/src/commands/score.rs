@@ -31,6 +31,7 @@ pub(crate) fn run(args: &ScoreArgs, printer: &mut Printer) -> Result<ExitStatus>
         scored: None,
         rewards: Vec::new(),
         lost: 0,
+        follows_picture: false,
         curves: args.plot.as_ref().map(|_| Curves::default()),
         output: Output::new(&args.frames, printer.format()),
     };
@@ -63,6 +64,8 @@ struct Scoring {
     rewards: Vec<f32>,
     /// How many frames or sources could not be scored.
     lost: usize,
+    /// Whether the last source was a single picture: such, as of a shell's `*.png`, are one sequence.
+    follows_picture: bool,
     /// For a diagram, if one was asked for.
     curves: Option<Curves>,
     output: Output,
@@ -72,6 +75,10 @@ impl Scoring {
     /// All frames of a source.
     fn score(&mut self, path: &Path, mut source: FrameSource, printer: &mut Printer) -> Result<()> {
         let many = source.len_hint() != Some(1);
+        if many || !self.follows_picture {
+            self.descriptor.reset();
+        }
+        self.follows_picture = !many;
         if many && matches!(self.output, Output::Sentence) {
             self.output = Output::Table { width: path.to_string_lossy().chars().count() + PLACE };
         }

@@ -13,6 +13,7 @@ use crate::ExitStatus;
 use crate::args::TuneArgs;
 use crate::error::{CliError, Result};
 use crate::evidence::{Known, Subject, words};
+use crate::files::refuse_existing;
 use crate::plot::{heat, write_svg};
 use crate::printer::{Format, Printer};
 
@@ -30,36 +31,49 @@ struct Judged {
 
 pub(crate) fn run(args: &TuneArgs, printer: &mut Printer) -> Result<ExitStatus> {
     let subject = Subject::read(&args.evidence, &args.reward)?;
+    check_out(args)?;
     let candidates = candidates(&subject, args.screen.as_deref())?;
     let known = Known::gather(&args.evidence, &subject, printer)?;
     let judged = judge(&subject, &known, candidates)?;
-    let all = || judged.iter().flat_map(|window| window.judgements.iter().map(move |judgement| (window, judgement)));
-    let Some(best) = recommend(all().map(|(_, judgement)| judgement)) else {
-        return Err(nothing_good(&judged).into());
+    let all: Vec<(&Judged, &Judgement)> =
+        judged.iter().flat_map(|window| window.judgements.iter().map(move |judgement| (window, judgement))).collect();
+    let Some(best_at) = recommend(all.iter().map(|(_, judgement)| *judgement)) else {
+        return Err(nothing_good(&all).into());
     };
-    let Some((window, _)) = all().find(|(_, judgement)| std::ptr::eq(*judgement, best)) else {
-        return Err(nothing_good(&judged).into());
-    };
-    let given =
-        judged.first().and_then(|window| window.judgements.first()).filter(|first| first.params == subject.params());
-    let recommendation = Recommendation { subject: &subject, known: &known, judged: &judged, window, best, given };
+    let (window, best) = all[best_at];
+    let given = all.first().map(|(_, first)| *first).filter(|first| first.params == subject.params());
+    let picture = args.screen.as_ref().unwrap_or(&subject.goal_path);
+    let out = args.out.as_deref();
+    let recommendation =
+        Recommendation { subject: &subject, known: &known, judged: &judged, window, best, given, picture, out };
     if printer.format() == Format::Json {
-        for (window, judgement) in all() {
+        for (index, (window, judgement)) in all.iter().enumerate() {
             let mut record = words::Record::new(&known, window.frames, window.candidate.rect, judgement);
-            record.recommended = Some(std::ptr::eq(judgement, best));
+            record.recommended = Some(index == best_at);
             printer.record(&record)?;
         }
     } else {
-        printer.bytes(recommendation.toml(None)?.as_bytes())?;
+        printer.bytes(recommendation.toml()?.as_bytes())?;
     }
     if best.verdict != Verdict::Good {
         printer.warning(format_args!("even the best of these settings is {}", words::verdict(best)), Some(BETTER));
     }
-    if let Some(out) = &args.out {
+    if let Some(out) = out {
         write_files(&recommendation, out, args.force, printer)?;
     }
     draw(args, &recommendation, printer)?;
     Ok(known.status())
+}
+
+/// Refuses to write over anything before any work is done, and over the config itself in any case.
+fn check_out(args: &TuneArgs) -> Result<()> {
+    let Some(out) = &args.out else { return Ok(()) };
+    let same = |a: &Path, b: &Path| matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b);
+    if same(out, &args.evidence.subject) {
+        let message = format!("--out: {} would lose all but its [reward]", out.display());
+        return Err(CliError::misuse(message).hint("write elsewhere, and put the [reward] into the config").into());
+    }
+    if args.force { Ok(()) } else { refuse_existing(out) }
 }
 
 const BETTER: &str = "show another part of the picture (--descriptor window, --screen), or judge by other frames";
@@ -83,12 +97,10 @@ fn judge(subject: &Subject, known: &Known, candidates: Vec<Candidate>) -> Result
     Ok(judged)
 }
 
-fn nothing_good(judged: &[Judged]) -> CliError {
-    let judgements = || judged.iter().flat_map(|window| &window.judgements);
-    let best = judgements().max_by(|a, b| a.quality.total_cmp(&b.quality));
+fn nothing_good(all: &[(&Judged, &Judgement)]) -> CliError {
+    let best = all.iter().map(|(_, judgement)| judgement).max_by(|a, b| a.quality.total_cmp(&b.quality));
     let best = best.map_or(String::new(), |best| format!("; the best is {}", words::verdict(best)));
-    CliError::failed(format!("none of {} settings makes a reward to learn from{best}", judgements().count()))
-        .hint(BETTER)
+    CliError::failed(format!("none of {} settings makes a reward to learn from{best}", all.len())).hint(BETTER)
 }
 
 fn draw(args: &TuneArgs, recommendation: &Recommendation<'_>, printer: &mut Printer) -> Result<()> {

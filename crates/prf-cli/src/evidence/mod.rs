@@ -5,6 +5,7 @@ mod subject;
 pub(crate) mod words;
 
 use std::collections::{BTreeMap, HashSet};
+use std::path::Path;
 
 use prf_core::io::{FrameInfo, FrameSource, Limits};
 use prf_core::{DescriptorParams, Evidence, Footage, Frame, Goal, Label};
@@ -50,13 +51,14 @@ impl Known {
         };
         let world = subject.env.as_ref().filter(|_| args.frames.is_empty() && !args.goal_only);
         // A world shows about as many as it is asked for, and none of them is to be dropped.
-        let limit = if world.is_some() { 2 * args.sample } else { args.sample };
+        let limit = if world.is_some() { 2 * args.sample + 200 } else { args.sample };
         let footage = Footage::new(motion, limit as usize)?;
+        let window = matches!(subject.descriptor(), DescriptorParams::Window(_)).then_some(&subject.goal.picture);
         let mut known = Known { kind: Kind::Goal, footage, names: BTreeMap::new(), lost: 0 };
         if let Some(path) = &args.scores {
-            known.read_scores(Scores::read(path, args.success_at)?, args, printer)?;
+            known.read_scores(Scores::read(path, args.success_at)?, (args, window), printer)?;
         } else if args.demo {
-            known.read_demonstrations(args, printer)?;
+            known.read_demonstrations((args, window), printer)?;
         } else if let Some(env) = world {
             known.play(env, args)?;
         } else if !args.frames.is_empty() {
@@ -65,7 +67,21 @@ impl Known {
         if known.kind != Kind::Goal && known.footage.frames().is_empty() {
             return Err(CliError::failed("no frame could be read").into());
         }
+        known.note_success(args, printer);
         Ok(known)
+    }
+
+    /// Says why there is no figure of success where one was asked for.
+    fn note_success(&self, args: &EvidenceArgs, printer: &mut Printer) {
+        let labels = self.footage.labels();
+        let has = |success| labels.iter().any(|label| label.success == Some(success));
+        let scores = labels.iter().filter_map(|label| label.score);
+        if let Some(border) = args.success_at
+            && !(has(true) && has(false))
+        {
+            let highest = scores.fold(f64::NEG_INFINITY, f64::max);
+            printer.note(format_args!("--success-at {border} tells no frames apart: the highest score is {highest}"));
+        }
     }
 
     /// The evidence on one goal.
@@ -106,61 +122,97 @@ impl Known {
         Ok(survey(env, args.seed, args.sample as usize, label, &mut self.footage)?)
     }
 
-    fn read_scores(&mut self, mut scores: Scores, args: &EvidenceArgs, printer: &mut Printer) -> Result<()> {
+    fn read_scores(&mut self, mut scores: Scores, frames: Frames<'_>, printer: &mut Printer) -> Result<()> {
         self.kind = Kind::Scores;
         let mut index = 0;
-        self.read(args, printer, |info| {
+        self.read(frames, printer, |seen| {
+            let label = match seen {
+                Seen::Frame(info) => scores.label(info, index)?,
+                Seen::Lost => None,
+                Seen::LostRest => {
+                    scores.lose_count();
+                    None
+                }
+            };
             index += 1;
-            info.and_then(|info| scores.label(info, index - 1))
+            Ok(label)
         })?;
-        scores.check(index)
+        // With frames lost, the table may well have been made for all of them.
+        if self.lost == 0 { scores.check(index) } else { Ok(()) }
     }
 
-    fn read_demonstrations(&mut self, args: &EvidenceArgs, printer: &mut Printer) -> Result<()> {
-        self.kind = Kind::Demonstrations(args.frames.len());
-        self.read(args, printer, |info| info.map(|_| Label::default()))
+    fn read_demonstrations(&mut self, frames: Frames<'_>, printer: &mut Printer) -> Result<()> {
+        self.read(frames, printer, |_| Ok(Some(Label::default())))?;
+        let (starts, kept) = (self.footage.starts(), self.footage.frames().len());
+        let ends = starts.iter().skip(1).copied().chain([kept]);
+        self.kind = Kind::Demonstrations(starts.iter().zip(ends).filter(|&(&start, end)| end > start).count());
+        Ok(())
     }
 
-    /// Takes in all frames of all sources. `label` is asked of each, also of those that can't be read; frames without one count for their movement alone.
+    /// Takes in all frames of all sources. `label` is asked of each; frames without one count for their movement alone.
     fn read(
         &mut self,
-        args: &EvidenceArgs,
+        (args, window): Frames<'_>,
         printer: &mut Printer,
-        mut label: impl FnMut(Option<&FrameInfo>) -> Option<Label>,
+        mut label: impl FnMut(Seen<'_>) -> Result<Option<Label>>,
     ) -> Result<()> {
         let limits = Limits { max_frames: args.max_frames, ..Limits::default() };
         let mut frame = Frame::new(1, 1);
+        let mut follows_picture = false;
         for path in &args.frames {
             let mut source = match FrameSource::open_within(path, limits) {
                 Ok(source) => source,
                 Err(error) => {
-                    self.lose(error, printer);
+                    label(if is_picture(path) { Seen::Lost } else { Seen::LostRest })?;
+                    self.lose(&error.into(), printer);
                     continue;
                 }
             };
-            self.footage.begin();
+            // Single pictures, such as a shell's `*.png`, are one sequence.
+            let is_single = source.len_hint() == Some(1);
+            if !(is_single && follows_picture) {
+                self.footage.begin();
+            }
+            follows_picture = is_single;
             while let Some(read) = source.next_into(&mut frame) {
-                let label = label(read.as_ref().ok());
-                match (read, label) {
-                    (Ok(info), Some(label)) => {
-                        self.footage.observe(frame.view(), label)?;
-                        self.remember(&info, args.frames.len() == 1);
+                match read {
+                    Ok(info) => {
+                        let label = label(Seen::Frame(&info))?;
+                        let name = frame_name(&info, args.frames.len() == 1);
+                        if let Err(error) = self.take(&frame, label, window, name) {
+                            self.lose(&anyhow::anyhow!("{}: {error}", info.path.display()), printer);
+                        }
                     }
-                    (Ok(_), None) => self.footage.pass(frame.view())?,
-                    (Err(error), _) => self.lose(error, printer),
+                    Err(error) => {
+                        label(if path.is_dir() { Seen::Lost } else { Seen::LostRest })?;
+                        self.lose(&error.into(), printer);
+                    }
                 }
             }
         }
         Ok(())
     }
 
-    fn remember(&mut self, info: &FrameInfo, is_only: bool) {
-        let file = info.path.file_name().unwrap_or(info.path.as_os_str()).to_string_lossy().into_owned();
-        let name = match info.time_s {
-            Some(_) if is_only => format!("#{}", info.index),
-            Some(_) => format!("#{} of {file}", info.index),
-            None => file,
-        };
+    fn take(
+        &mut self,
+        frame: &Frame,
+        label: Option<Label>,
+        window: Option<&Frame>,
+        name: String,
+    ) -> std::result::Result<(), prf_core::Error> {
+        let shape = |frame: &Frame| [frame.height(), frame.width()];
+        if let Some(goal) = window
+            && (0..2).any(|side| shape(goal)[side] > shape(frame)[side])
+        {
+            return Err(prf_core::Error::TemplateTooLarge { template: shape(goal), frame: shape(frame) });
+        }
+        let Some(label) = label else { return self.footage.pass(frame.view()) };
+        self.footage.observe(frame.view(), label)?;
+        self.remember(name);
+        Ok(())
+    }
+
+    fn remember(&mut self, name: String) {
         self.names.insert(self.footage.shown() - 1, name);
         // Only the names of frames that are kept are needed, and names are dropped seldom, not at each frame.
         if self.names.len() > 4 * self.footage.frames().len().max(1000) {
@@ -169,9 +221,37 @@ impl Known {
         }
     }
 
-    fn lose(&mut self, error: prf_core::Error, printer: &mut Printer) {
+    fn lose(&mut self, error: &anyhow::Error, printer: &mut Printer) {
         self.lost += 1;
-        printer.error(&error.into());
+        printer.error(error);
+    }
+}
+
+/// What to read, and the goal that has to fit into each frame, if it is a window.
+type Frames<'a> = (&'a EvidenceArgs, Option<&'a Frame>);
+
+/// What comes next in the frames' order.
+#[derive(Clone, Copy)]
+enum Seen<'a> {
+    Frame(&'a FrameInfo),
+    /// One that can't be read.
+    Lost,
+    /// Nobody knows how many that can't be read.
+    LostRest,
+}
+
+/// Whether a path that can't be opened was meant to be one frame.
+fn is_picture(path: &Path) -> bool {
+    let ending = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+    ["png", "jpg", "jpeg", "bmp", "webp"].contains(&ending.as_str())
+}
+
+fn frame_name(info: &FrameInfo, is_only: bool) -> String {
+    let file = info.path.file_name().unwrap_or(info.path.as_os_str()).to_string_lossy().into_owned();
+    match info.time_s {
+        Some(_) if is_only => format!("#{}", info.index),
+        Some(_) => format!("#{} of {file}", info.index),
+        None => file,
     }
 }
 

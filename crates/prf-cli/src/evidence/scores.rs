@@ -1,6 +1,8 @@
 //! A CSV beside frames: what is known of each.
 
 use std::collections::HashMap;
+use std::ffi::OsStr;
+use std::fs::File;
 use std::path::Path;
 
 use csv::StringRecord;
@@ -21,6 +23,8 @@ pub(super) struct Scores {
     named: Option<HashMap<String, usize>>,
     /// Which lines have found their frame.
     used: Vec<bool>,
+    /// Whether it is unknown how many frames there were so far, since some could not be read.
+    is_lost: bool,
 }
 
 impl Scores {
@@ -31,13 +35,12 @@ impl Scores {
     /// Misuse, with the line, for what is no CSV or holds what is no score.
     pub(super) fn read(path: &Path, success_at: Option<f64>) -> Result<Scores> {
         let shown = path.display().to_string();
-        let mut reader = csv::ReaderBuilder::new()
-            .trim(csv::Trim::All)
-            .from_path(path)
-            .map_err(|error| CliError::misuse(format!("cannot read {shown}: {error}")).hint(COLUMNS))?;
+        let file = File::open(path).map_err(|error| CliError::misuse(format!("cannot read {shown}: {error}")))?;
+        let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(file);
         let broken = |error: csv::Error| CliError::misuse(format!("{shown}: {error}")).hint(COLUMNS);
         let columns = Columns::of(reader.headers().map_err(broken)?, &shown)?;
-        let mut scores = Scores { path: shown.clone(), labels: Vec::new(), named: None, used: Vec::new() };
+        let mut scores =
+            Scores { path: shown.clone(), labels: Vec::new(), named: None, used: Vec::new(), is_lost: false };
         for record in reader.records() {
             let record = record.map_err(broken)?;
             let label = columns.label(&record, success_at).map_err(|wrong| located(&shown, &record, &wrong))?;
@@ -57,36 +60,59 @@ impl Scores {
         Ok(scores)
     }
 
-    /// What is known of a frame, the `index`-th of all.
-    pub(super) fn label(&mut self, info: &FrameInfo, index: usize) -> Option<Label> {
+    /// What is known of a frame, the `index`-th of all; nothing where the file doesn't say.
+    ///
+    /// # Errors
+    ///
+    /// Failure when the frame's line can't be told any more.
+    pub(super) fn label(&mut self, info: &FrameInfo, index: usize) -> Result<Option<Label>> {
         let line = match &self.named {
-            None => index,
-            Some(lines) => {
-                let shown = info.path.to_string_lossy();
-                let file = info.path.file_name().map(|name| name.to_string_lossy());
-                let number = index.to_string();
-                let names = [Some(shown), file, Some(number.as_str().into())];
-                *names.into_iter().flatten().find_map(|name| lines.get(name.as_ref()))?
+            None if self.is_lost => {
+                let message = format!("which line of {} belongs to {} can't be told", self.path, info.path.display());
+                return Err(CliError::failed(format!("{message}, as frames before it could not be read"))
+                    .hint("name the frames in a column `frame`")
+                    .into());
             }
+            None => Some(index),
+            Some(lines) => names(info, index).iter().find_map(|name| lines.get(name)).copied(),
         };
-        *self.used.get_mut(line)? = true;
-        self.labels.get(line).copied()
+        let Some((label, used)) = line.and_then(|line| Some((self.labels.get(line)?, self.used.get_mut(line)?))) else {
+            return Ok(None);
+        };
+        *used = true;
+        Ok(Some(*label).filter(|label| label.score.is_some() || label.success.is_some()))
     }
 
-    /// Refuses a file that belongs to other frames: `frames` of them were there.
+    /// Some frames could not be read, and it is unknown how many.
+    pub(super) fn lose_count(&mut self) {
+        self.is_lost = true;
+    }
+
+    /// Refuses a file that belongs to other frames: `frames` of them were there, and all could be read.
     pub(super) fn check(&self, frames: usize) -> Result<()> {
-        let (lines, used) = (self.labels.len(), self.used.iter().filter(|&&used| used).count());
-        let message = match self.named {
-            None if lines != frames => {
+        let lines = self.labels.len();
+        let unused = self.named.iter().flatten().find(|&(_, &line)| !self.used[line]);
+        let message = match (&self.named, unused) {
+            (None, _) if lines != frames => {
                 format!("{} has lines for {lines} frames, expected {frames}: one for each, in their order", self.path)
             }
-            Some(_) if used == 0 => {
-                format!("none of the {lines} frames that {} names is among the {frames}", self.path)
+            (_, Some((name, _))) => {
+                format!("{} has a line for \"{name}\", which is none of the {frames} frames", self.path)
             }
             _ => return Ok(()),
         };
         Err(CliError::misuse(message).hint(COLUMNS).into())
     }
+}
+
+/// What a line may call a frame: by its path or its file with or without the ending; in an animation or a video, by its number.
+fn names(info: &FrameInfo, index: usize) -> Vec<String> {
+    if info.time_s.is_some() {
+        return vec![index.to_string()];
+    }
+    let part = |part: Option<&OsStr>| part.map(|part| part.to_string_lossy().into_owned());
+    let path = info.path.to_string_lossy().into_owned();
+    [Some(path), part(info.path.file_name()), part(info.path.file_stem())].into_iter().flatten().collect()
 }
 
 fn located(path: &str, record: &StringRecord, wrong: &str) -> CliError {

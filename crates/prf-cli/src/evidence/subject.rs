@@ -55,8 +55,12 @@ impl Subject {
         let mask_path = config.window.as_ref().and_then(|window| window.mask.clone());
         let goal_path = source.resolve("reward.goal", tables.reward.goal.as_deref().unwrap_or(Path::new("")));
         config.goal = tables.reward.goal;
-        if let (Some(window), Some(named), None) = (&mut config.window, tables.reward.window, &reward.mask) {
-            window.mask = named.mask;
+        if let Some(window) = &mut config.window {
+            window.mask = match &reward.mask {
+                // Typed, so that it doesn't start at the config's folder.
+                Some(typed) => Some(std::path::absolute(typed)?),
+                None => tables.reward.window.and_then(|named| named.mask),
+            };
         }
         Subject::new(config, (goal_path, mask_path), tables.env)
     }

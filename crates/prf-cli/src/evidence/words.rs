@@ -86,27 +86,34 @@ fn short(value: f32) -> String {
 /// The verdict with its reason.
 pub(crate) fn verdict(judgement: &Judgement) -> String {
     let name = verdict_name(judgement.verdict);
-    let weakest = judgement.figures.iter().filter(|figure| figure.kind.needed().is_some());
-    let weakest = weakest.min_by(|a, b| a.strength().total_cmp(&b.strength()));
-    let figure = weakest.map_or(String::new(), |figure| match figure.value {
-        Some(value) => format!("{}: {value:.2}", figure.kind.name()),
-        None => format!("{}: all rewards are the same", figure.kind.name()),
-    });
-    match judgement.verdict {
-        Verdict::Good => format!("{name}: the reward orders the frames as the task does"),
-        Verdict::Weak if judgement.rewards.are_narrow() => {
-            format!(
-                "{name}: most rewards lie within {:.4} of each other, so an agent sees little of their order",
-                judgement.rewards.spread()
-            )
-        }
-        Verdict::Weak => format!("{name}: {figure}"),
-        Verdict::Misleading => format!("{name}: the reward punishes progress ({figure})"),
+    let reason = match judgement.verdict {
+        Verdict::Good => "the reward orders the frames as the task does".to_owned(),
+        Verdict::Weak => weakness(judgement),
+        Verdict::Misleading => format!("the reward punishes progress ({})", weakest(judgement)),
         Verdict::Blind => format!(
-            "{name}: rewards from {} to {} tell an agent nothing",
+            "rewards from {} to {} tell an agent nothing",
             short(judgement.rewards.least),
             short(judgement.rewards.largest)
         ),
+    };
+    format!("{name}: {reason}")
+}
+
+fn weakness(judgement: &Judgement) -> String {
+    if judgement.rewards.are_narrow() {
+        let spread = judgement.rewards.spread();
+        return format!("most rewards lie within {spread:.4} of each other, so an agent sees little of their order");
+    }
+    weakest(judgement)
+}
+
+/// The figure that decides.
+fn weakest(judgement: &Judgement) -> String {
+    let deciding = judgement.figures.iter().filter(|figure| figure.kind.needed().is_some());
+    match deciding.min_by(|a, b| a.strength().total_cmp(&b.strength())) {
+        Some(Figure { kind, value: Some(value) }) => format!("{}: {value:.2}", kind.name()),
+        Some(Figure { kind, value: None }) => format!("{}: none, as all rewards are the same", kind.name()),
+        None => "nothing in the goal can be moved, so nothing tells what order is right".to_owned(),
     }
 }
 

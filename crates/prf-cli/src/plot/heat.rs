@@ -92,7 +92,7 @@ fn draw(canvas: &Canvas<'_>, table: &HeatTable) -> DrawResult {
             let x = left + column as i32 * width;
             let (colour, ink) = colours(value);
             canvas.draw(&Rectangle::new([(x + 1, y + 1), (x + width - 1, y + height - 1)], colour.filled()))?;
-            write(canvas, &format!("{value:.2}"), (x + width / 2, y + height / 2), (theme::SMALL, ink), MIDDLE)?;
+            write(canvas, &hundredths(value), (x + width / 2, y + height / 2), (theme::SMALL, ink), MIDDLE)?;
         }
     }
     if let Some((row, column)) = table.marked {
@@ -105,6 +105,11 @@ fn draw(canvas: &Canvas<'_>, table: &HeatTable) -> DrawResult {
 
 fn write(canvas: &Canvas<'_>, words: &str, at: (i32, i32), (size, ink): (f64, RGBColor), pos: Pos) -> DrawResult {
     canvas.draw(&Text::new(text::clean(words), at, theme::font(size).into_text_style(canvas).color(&ink).pos(pos)))
+}
+
+/// A number of two decimals, and no minus before a nought.
+pub(crate) fn hundredths(value: f64) -> String {
+    format!("{:.2}", (value * 100.0).round() / 100.0 + 0.0)
 }
 
 /// Orange for −1, white for 0 and blue for 1, with the ink that can be read on it.
@@ -120,6 +125,11 @@ fn colours(value: f64) -> (RGBColor, RGBColor) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_nought_has_no_sign() {
+        assert_eq!([-0.004, 0.004, -0.006, 1.0].map(hundredths), ["0.00", "0.00", "-0.01", "1.00"]);
+    }
 
     #[test]
     fn colours_run_from_wrong_over_paper_to_right() {

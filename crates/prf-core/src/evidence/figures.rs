@@ -158,28 +158,32 @@ pub(super) fn of_alterations(closeness: &[f64], probes: &[Probe]) -> Vec<Figure>
             spearman(&levels, &near)
         }))
     };
-    vec![
-        Figure { kind: FigureKind::Displacement, value: falls(Alteration::Displaced) },
-        Figure { kind: FigureKind::Absence, value: absence(closeness, probes) },
-        Figure { kind: FigureKind::Scaling, value: falls(Alteration::Scaled) },
-        Figure { kind: FigureKind::Occlusion, value: falls(Alteration::Occluded) },
-        Figure { kind: FigureKind::Noise, value: falls(Alteration::Noisy) },
-    ]
+    let figures = [
+        (FigureKind::Displacement, falls(Alteration::Displaced)),
+        (FigureKind::Absence, absence(closeness, probes)),
+        (FigureKind::Scaling, falls(Alteration::Scaled)),
+        (FigureKind::Occlusion, falls(Alteration::Occluded)),
+        (FigureKind::Noise, falls(Alteration::Noisy)),
+    ];
+    let known = figures.into_iter().filter(|(_, value)| value.is_some());
+    known.map(|(kind, value)| Figure { kind, value }).collect()
 }
 
+/// The mean over those things that can be displaced.
 fn absence(closeness: &[f64], probes: &[Probe]) -> Option<f64> {
     let objects = probes.iter().map(|probe| probe.object + 1).max()?;
-    mean((0..objects).map(|object| {
+    let areas = (0..objects).filter_map(|object| {
         let of_object = probes.iter().zip(closeness).filter(|(probe, _)| probe.object == object);
         let (displaced, near): (Vec<bool>, Vec<f64>) = of_object
             .filter(|(probe, _)| matches!(probe.alteration, Alteration::Displaced | Alteration::Absent))
             .map(|(probe, &near)| (probe.alteration == Alteration::Displaced, near))
             .unzip();
         auc(&near, &displaced)
-    }))
+    });
+    mean(areas.map(Some))
 }
 
-/// Where a value is missing the reward told nothing, which counts as 0; without any value there is no mean.
+/// Where a correlation is missing the reward told nothing, which counts as 0; of no value there is no mean.
 fn mean(values: impl Iterator<Item = Option<f64>>) -> Option<f64> {
     let values: Vec<f64> = values.map(|value| value.unwrap_or(0.0)).collect();
     (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
@@ -256,6 +260,21 @@ mod tests {
             "{falls:?} {above:?}"
         );
         assert_eq!(values(&[0.0, 0.0, 0.0, 0.0]), (Some(0.0), Some(0.5)));
+    }
+
+    #[test]
+    fn a_thing_that_cannot_be_displaced_has_no_say() {
+        let stuck = Probe { object: 1, ..probe(Alteration::Absent, 2, 1) };
+        let probes = [
+            probe(Alteration::Displaced, 0, 1),
+            probe(Alteration::Displaced, 0, 2),
+            probe(Alteration::Displaced, 0, 3),
+            probe(Alteration::Absent, 1, 1),
+            stuck.clone(),
+        ];
+        let figures = of_alterations(&[-1.0, -2.0, -3.0, -4.0, -0.1], &probes);
+        assert_eq!(figures[1], Figure { kind: FigureKind::Absence, value: Some(1.0) });
+        assert_eq!(of_alterations(&[-0.1], &[stuck]), []);
     }
 
     #[test]

@@ -3,7 +3,8 @@
 use std::borrow::Cow;
 
 use super::figures::LEAST_FRAMES;
-use super::{Evidence, Knowledge, finder, template};
+use super::{Evidence, Knowledge, template};
+use crate::descriptor::WindowFinder;
 use crate::{DescriptorParams, Error, Frame, FrameView, Goal, MotionParams, MotionTemplate};
 
 /// What is known of a frame.
@@ -162,11 +163,11 @@ impl Footage {
         if least >= most && !(has(true) && has(false)) {
             let got = match scores().next() {
                 Some(score) => format!("all {} frames have the score {score}", scores().count()),
-                None => "no frame has a score".to_owned(),
+                None => format!("none of the {} frames to judge by has a score", self.kept.labels.len()),
             };
             return Err(Error::NoEvidence { got, expected: "frames of different scores, or of success and failure" });
         }
-        self.evidence(descriptor, goal, Knowledge::Scores(Cow::Borrowed(&self.kept.labels)))
+        self.evidence(descriptor, goal, Knowledge::Scores(&self.kept.labels))
     }
 
     /// Evidence by demonstrations: templates of this goal in all frames; every [`begin`](Footage::begin) begins one
@@ -182,7 +183,7 @@ impl Footage {
             let got = format!("the longest demonstration has {longest} frames");
             return Err(Error::NoEvidence { got, expected: "at least 3 frames that end at the goal" });
         }
-        self.evidence(descriptor, goal, Knowledge::Demonstrations(Cow::Borrowed(&self.kept.starts)))
+        self.evidence(descriptor, goal, Knowledge::Demonstrations(&self.kept.starts))
     }
 
     fn evidence<'a>(
@@ -191,11 +192,12 @@ impl Footage {
         goal: &Goal,
         knowledge: Knowledge<'a>,
     ) -> Result<Evidence<'a>, Error> {
-        let templates = match (descriptor, finder(descriptor, goal)?) {
-            (DescriptorParams::Motion(_), _) => Cow::Borrowed(&self.kept.templates[..]),
-            (_, None) => Cow::Borrowed(&self.kept.frames[..]),
-            (_, Some(mut finder)) => {
-                let found = self.kept.frames.iter().map(|frame| template(Some(&mut finder), frame));
+        let templates = match descriptor {
+            DescriptorParams::Motion(_) => Cow::Borrowed(&self.kept.templates[..]),
+            DescriptorParams::Direct => Cow::Borrowed(&self.kept.frames[..]),
+            DescriptorParams::Window(window) => {
+                let mut finder = WindowFinder::new(&goal.picture, goal.mask.as_ref(), *window)?;
+                let found = self.kept.frames.iter().map(|frame| template(&mut finder, frame));
                 Cow::Owned(found.collect::<Result<Vec<_>, _>>()?)
             }
         };
@@ -276,7 +278,10 @@ mod tests {
         let scored = |footage: &Footage| footage.scored(&DescriptorParams::Direct, &goal).map(|_| ());
         let mut footage = Footage::new(None, 8).expect("above 0");
         let error = scored(&footage).expect_err("nothing shown").to_string();
-        assert!(error.starts_with("no frame has a score, expected frames of different scores"), "{error}");
+        assert!(
+            error.starts_with("none of the 0 frames to judge by has a score, expected frames of different scores"),
+            "{error}"
+        );
         show(&mut footage, 1);
         show(&mut footage, 1);
         let error = scored(&footage).expect_err("one score").to_string();

@@ -65,9 +65,9 @@ pub struct Altered<'a> {
 /// What is known of the templates, in their order.
 #[derive(Clone, Debug)]
 enum Knowledge<'a> {
-    Scores(Cow<'a, [Label]>),
+    Scores(&'a [Label]),
     /// The places at which demonstrations begin.
-    Demonstrations(Cow<'a, [usize]>),
+    Demonstrations(&'a [usize]),
     Alterations(Vec<Probe>),
 }
 
@@ -85,9 +85,9 @@ impl Evidence<'static> {
         let is_window = matches!(descriptor, DescriptorParams::Window(_));
         let probes = probes::probes(goal, is_window)?;
         let templates = match descriptor {
-            DescriptorParams::Window(_) => {
-                let mut finder = finder(descriptor, goal)?;
-                let found = probes.iter().map(|probe| template(finder.as_mut(), &probe.frame));
+            DescriptorParams::Window(window) => {
+                let mut finder = WindowFinder::new(&goal.picture, goal.mask.as_ref(), *window)?;
+                let found = probes.iter().map(|probe| template(&mut finder, &probe.frame));
                 found.collect::<Result<Vec<_>, _>>()?
             }
             // A motion template is altered as it is.
@@ -154,16 +154,8 @@ impl Evidence<'_> {
     }
 }
 
-/// What finds `T_A` in a frame, where that is not the frame itself.
-fn finder(descriptor: &DescriptorParams, goal: &Goal) -> Result<Option<WindowFinder>, Error> {
-    match descriptor {
-        DescriptorParams::Window(window) => Ok(Some(WindowFinder::new(&goal.picture, goal.mask.as_ref(), *window)?)),
-        DescriptorParams::Direct | DescriptorParams::Motion(_) => Ok(None),
-    }
-}
-
-fn template(finder: Option<&mut WindowFinder>, frame: &Frame) -> Result<Frame, Error> {
-    let Some(finder) = finder else { return Ok(frame.clone()) };
+/// The window of the frame that was found.
+fn template(finder: &mut WindowFinder, frame: &Frame) -> Result<Frame, Error> {
     let found = finder.find(frame.view())?;
     let pixels = (0..found.height()).flat_map(|y| found.row(y)).copied().collect();
     Frame::from_vec(found.width(), found.height(), pixels)

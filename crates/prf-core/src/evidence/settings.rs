@@ -16,11 +16,9 @@ pub fn settings(goal: &Goal, params: RewardParams) -> Vec<RewardParams> {
     let crop = crop_box(goal.seen().view());
     let fits = |hog: &HogParams| HogLayout::new(hog, crop.width, crop.height).is_ok();
     let mut settings: Vec<RewardParams> = Some(params).filter(|params| fits(&params.hog)).into_iter().collect();
-    let mut cells: Vec<CellSize> = CELLS.map(CellSize::Fraction).to_vec();
-    cells.dedup_by_key(|cell| cell.cell_px(crop.height));
     let kinds = NORMS.iter().flat_map(|&norm| BLOCKS.map(|block_cells| (norm, block_cells))).chain([(Norm::None, 1)]);
     for (norm, block_cells) in kinds {
-        for &cell in &cells {
+        for cell in CELLS.map(CellSize::Fraction) {
             let hog = HogParams { cell, norm, block_cells, ..params.hog };
             let same = |other: &RewardParams| {
                 let px = |cell: CellSize| cell.cell_px(crop.height);

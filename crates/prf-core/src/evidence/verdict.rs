@@ -123,15 +123,19 @@ impl Judgement {
     }
 }
 
-/// The best of these settings: of the highest quality, then of the widest spread, and of those alike in both the first. None that is
-/// blind or misleading is recommended.
-pub fn recommend<'a>(judgements: impl IntoIterator<Item = &'a Judgement>) -> Option<&'a Judgement> {
-    let is_usable = |judgement: &&Judgement| matches!(judgement.verdict, Verdict::Good | Verdict::Weak);
-    let mut best: Vec<&Judgement> = judgements.into_iter().filter(is_usable).collect();
-    let quality = best.iter().map(|judgement| judgement.quality).fold(f64::NEG_INFINITY, f64::max);
-    best.retain(|judgement| judgement.quality >= quality - SAME_QUALITY);
-    let spread = best.iter().map(|judgement| judgement.rewards.spread()).fold(0.0, f32::max);
-    best.into_iter().find(|judgement| judgement.rewards.spread() >= SAME_SPREAD * spread)
+/// Which of these settings is the best: good ones before weak ones, then those of the highest quality, of these those of the widest spread,
+/// and of those alike in all the first. None that is blind or misleading is recommended.
+pub fn recommend<'a>(judgements: impl IntoIterator<Item = &'a Judgement>) -> Option<usize> {
+    let mut best: Vec<(usize, &Judgement)> = judgements.into_iter().enumerate().collect();
+    best.retain(|(_, judgement)| matches!(judgement.verdict, Verdict::Good | Verdict::Weak));
+    if best.iter().any(|(_, judgement)| judgement.verdict == Verdict::Good) {
+        best.retain(|(_, judgement)| judgement.verdict == Verdict::Good);
+    }
+    let quality = best.iter().map(|(_, judgement)| judgement.quality).fold(f64::NEG_INFINITY, f64::max);
+    best.retain(|(_, judgement)| judgement.quality >= quality - SAME_QUALITY);
+    let spread = best.iter().map(|(_, judgement)| judgement.rewards.spread()).fold(0.0, f32::max);
+    let first = best.into_iter().find(|(_, judgement)| judgement.rewards.spread() >= SAME_SPREAD * spread);
+    first.map(|(index, _)| index)
 }
 
 #[cfg(test)]
@@ -189,8 +193,16 @@ mod tests {
     fn of_settings_that_are_alike_the_first_is_recommended() {
         let judged: Vec<Judgement> =
             [(0.9, 0.2), (0.97, 0.1), (0.965, 0.2), (0.969, 0.201), (-0.5, 1.0)].map(|(r, m)| judged(r, m)).to_vec();
-        assert!(std::ptr::eq(recommend(&judged).expect("three are usable"), &judged[2]));
+        assert_eq!(recommend(&judged), Some(2));
         assert_eq!(recommend(&judged[4..]), None);
         assert_eq!(recommend([]), None);
+    }
+
+    #[test]
+    fn a_good_setting_goes_before_one_that_is_right_but_narrow() {
+        let mut narrow = judged(0.99, 0.02);
+        (narrow.rewards.low, narrow.rewards.high) = (0.5, 0.501);
+        narrow.verdict = Verdict::Weak;
+        assert_eq!(recommend(&[narrow, judged(0.85, 1.0)]), Some(1));
     }
 }

@@ -47,7 +47,7 @@ fn bounds(values: impl Iterator<Item = f64> + Clone) -> (f64, f64) {
 fn by_score(known: &Known, rewards: &[f64]) -> Vec<Curve> {
     let labels = known.footage.labels();
     let series = |name: &str, success: Option<bool>| {
-        let of_kind = labels.iter().zip(rewards).filter(|(label, _)| success.is_none() || label.success == success);
+        let of_kind = labels.iter().zip(rewards).filter(|(label, _)| label.success == success);
         let has_scores = labels.iter().any(|label| label.score.is_some());
         let points = of_kind.filter_map(|(label, &reward)| {
             let success = label.success.map(|success| f64::from(u8::from(success)));
@@ -55,10 +55,7 @@ fn by_score(known: &Known, rewards: &[f64]) -> Vec<Curve> {
         });
         Curve { name: name.to_owned(), points: points.collect() }
     };
-    let curves = match labels.iter().any(|label| label.success == Some(true)) {
-        true => vec![series("not a success", Some(false)), series("success", Some(true))],
-        false => vec![series("frames", None)],
-    };
+    let curves = [series("frames", None), series("not a success", Some(false)), series("success", Some(true))];
     curves.into_iter().filter(|curve| !curve.points.is_empty()).collect()
 }
 

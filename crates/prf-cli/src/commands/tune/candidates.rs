@@ -61,15 +61,19 @@ pub(super) fn candidates(subject: &Subject, screen: Option<&Path>) -> Result<Vec
 fn find(goal: &Frame, screen: &Frame, path: &Path) -> Result<Rect> {
     let misfit = |error: prf_core::Error| CliError::misuse(format!("--screen {}: {error}", path.display()));
     let mut matcher = TemplateMatcher::new(goal, None, MatchMethod::CcorrNormed).map_err(misfit)?;
-    let found = matcher.best(screen.view()).map_err(misfit)?;
-    if cut(screen, found.rect) == *goal {
-        return Ok(found.rect);
+    let similar = matcher.best(screen.view()).map_err(misfit)?;
+    // The best match may be the same but for its brightness.
+    let (rows, columns) = (screen.height() - goal.height() + 1, screen.width() - goal.width() + 1);
+    let is_equal =
+        |x: usize, y: usize| (0..goal.height()).all(|row| screen.row(y + row)[x..].starts_with(goal.row(row)));
+    if let Some((x, y)) = (0..rows).flat_map(|y| (0..columns).map(move |x| (x, y))).find(|&(x, y)| is_equal(x, y)) {
+        return Ok(Rect { x, y, width: goal.width(), height: goal.height() });
     }
-    let Rect { x, y, .. } = found.rect;
+    let Rect { x, y, .. } = similar.rect;
     let message = format!(
         "--screen {}: the goal is no part of it; the most similar part, at ({x}, {y}), matches by {:.3}",
         path.display(),
-        found.score
+        similar.score
     );
     Err(CliError::misuse(message).hint("name the picture that the goal was cut out of").into())
 }

@@ -21,6 +21,10 @@ pub(super) struct Recommendation<'a> {
     pub(super) best: &'a Judgement,
     /// What the given settings are worth, if they fit the goal.
     pub(super) given: Option<&'a Judgement>,
+    /// What windows are cut out of.
+    pub(super) picture: &'a Path,
+    /// The file that it is written to.
+    pub(super) out: Option<&'a Path>,
 }
 
 /// The files of a goal that was cut anew.
@@ -53,23 +57,23 @@ impl Recommendation<'_> {
         all
     }
 
-    /// The `[reward]`, with the reason as comments, as it stands in a file `out` or is to be put into the config.
-    pub(super) fn toml(&self, out: Option<&Path>) -> Result<String> {
+    /// The `[reward]`, with the reason as comments, as it stands in the file or is to be put into the config.
+    pub(super) fn toml(&self) -> Result<String> {
         let reward = RewardConfig { hog: self.best.params.hog, ..self.subject.reward.clone() };
-        let reward = self.with_goal(reward, out);
+        let reward = self.with_goal(reward);
         let comments: Vec<String> =
             self.reason().iter().map(|line| format!("# {line}").trim_end().to_owned()).collect();
         Ok(format!("{}\n\n{}", comments.join("\n"), words::snippet(&reward)?))
     }
 
     /// With paths that lead from the snippet, or from where the given ones do, to the goal.
-    fn with_goal(&self, mut reward: RewardConfig, out: Option<&Path>) -> RewardConfig {
-        let folder = out.map(|out| out.parent().unwrap_or(Path::new("")));
+    fn with_goal(&self, mut reward: RewardConfig) -> RewardConfig {
+        let folder = self.out.map(|out| out.parent().unwrap_or(Path::new("")));
         let (goal, mask) = match (self.window.candidate.is_given, folder) {
             (true, None) => return reward,
             (true, Some(_)) => (self.subject.goal_path.clone(), self.subject.mask_path.clone()),
             (false, _) => {
-                let files = self.files(out.or(reward.goal.as_deref()).unwrap_or(&self.subject.goal_path));
+                let files = self.files(self.out.or(reward.goal.as_deref()).unwrap_or(&self.subject.goal_path));
                 (files.goal, self.window.candidate.goal.mask.as_ref().map(|_| files.mask))
             }
         };
@@ -106,14 +110,31 @@ impl Recommendation<'_> {
             lines.push(String::new());
             lines.extend(tables::text(&table));
         }
-        if !self.window.candidate.is_given
-            && let Some(Rect { x, y, width, height }) = self.window.candidate.rect
-        {
-            lines.push(String::new());
-            lines.push(format!("The goal is the part {x},{y},{width},{height} of the picture: prf goal crop makes it, and --out writes it."));
-        }
+        lines.extend(self.commands());
         lines
     }
+
+    /// What cuts the goal, and its mask, where it is not the given one.
+    fn commands(&self) -> Vec<String> {
+        let (false, Some(rect)) = (self.window.candidate.is_given, self.window.candidate.rect) else {
+            return Vec::new();
+        };
+        let Rect { x, y, width, height } = rect;
+        let files = self.files(self.out.unwrap_or(&self.subject.goal_path));
+        let crop = |from: &Path, to: &Path| {
+            format!("prf goal crop {} --rect {x},{y},{width},{height} --out {}", quoted(from), quoted(to))
+        };
+        let mut lines = vec![String::new(), "The goal is cut by".to_owned(), crop(self.picture, &files.goal)];
+        lines.extend(self.subject.mask_path.as_ref().map(|mask| crop(mask, &files.mask)));
+        lines
+    }
+}
+
+/// As a shell takes it.
+fn quoted(path: &Path) -> String {
+    let path = path.to_string_lossy();
+    let is_plain = |c: char| c.is_alphanumeric() || "/._-+".contains(c);
+    if path.chars().all(is_plain) { path.into_owned() } else { format!("'{}'", path.replace('\'', "'\\''")) }
 }
 
 /// Writes the snippet, and the goal if it was cut anew; nothing if anything is in the way.
@@ -131,7 +152,7 @@ pub(super) fn write_files(
         files.extend(candidate.goal.mask.as_ref().map(|mask| (named.mask, io::png(mask.view()))));
     }
     // The snippet last: once it is there, everything it names is there too.
-    files.push((out.to_owned(), recommendation.toml(Some(out))?.into_bytes()));
+    files.push((out.to_owned(), recommendation.toml()?.into_bytes()));
     if !force {
         files.iter().try_for_each(|(path, _)| refuse_existing(path))?;
     }

@@ -7,7 +7,7 @@ use prf_core::Judgement;
 
 use super::Judged;
 use crate::evidence::words;
-use crate::plot::heat::HeatTable;
+use crate::plot::heat::{HeatTable, hundredths};
 
 /// Cell sizes by norms and blocks, of one window; `best` is marked.
 pub(super) fn settings(title: String, judgements: &[Judgement], best: &Judgement) -> HeatTable {
@@ -75,7 +75,7 @@ pub(super) fn text(table: &HeatTable) -> Vec<String> {
     for (row, (name, values)) in table.rows.iter().enumerate() {
         let mut line = format!("{name:>names$}");
         for (column, value) in values.iter().enumerate() {
-            let value = value.map_or(String::new(), |value| format!("{value:.2}"));
+            let value = value.map_or(String::new(), hundredths);
             let star = if table.marked == Some((row, column)) { '*' } else { ' ' };
             let _ = write!(line, "{value:>width$}{star}");
         }
