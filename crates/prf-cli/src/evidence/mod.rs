@@ -75,12 +75,13 @@ impl Known {
     fn note_success(&self, args: &EvidenceArgs, printer: &mut Printer) {
         let labels = self.footage.labels();
         let has = |success| labels.iter().any(|label| label.success == Some(success));
-        let scores = labels.iter().filter_map(|label| label.score);
+        let highest = labels.iter().filter_map(|label| label.score).max_by(f64::total_cmp);
         if let Some(border) = args.success_at
             && !(has(true) && has(false))
         {
-            let highest = scores.fold(f64::NEG_INFINITY, f64::max);
-            printer.note(format_args!("--success-at {border} tells no frames apart: the highest score is {highest}"));
+            let highest =
+                highest.map_or("there are no scores".to_owned(), |score| format!("the highest score is {score}"));
+            printer.note(format_args!("--success-at {border} tells no frames apart: {highest}"));
         }
     }
 
