@@ -4,6 +4,7 @@ use std::num::NonZero;
 use std::path::Path;
 use std::thread;
 
+use indicatif::{ProgressBar, ProgressStyle};
 use prf_core::{Judgement, Verdict, recommend, settings};
 
 use self::candidates::{Candidate, candidates};
@@ -81,8 +82,13 @@ const BETTER: &str = "show another part of the picture (--descriptor window, --s
 /// Judges all settings of all windows. A window in which nothing can be judged is left out, unless it is the given one.
 fn judge(subject: &Subject, known: &Known, candidates: Vec<Candidate>) -> Result<Vec<Judged>> {
     let threads = thread::available_parallelism().unwrap_or(NonZero::<usize>::MIN);
+    let style =
+        ProgressStyle::with_template("{bar:24} {pos} of {len} windows  {eta} left").expect("the template is a literal");
+    // On a terminal only, and gone when it is done.
+    let bar = ProgressBar::new(candidates.len() as u64).with_style(style.progress_chars("█▉▊▋▌▍▎▏ "));
     let mut judged = Vec::new();
     for (index, candidate) in candidates.into_iter().enumerate() {
+        bar.set_position(index as u64);
         let evidence = match known.evidence(&subject.descriptor(), &candidate.goal) {
             Ok(evidence) => evidence,
             Err(error) if index == 0 => return Err(error),
@@ -94,6 +100,7 @@ fn judge(subject: &Subject, known: &Known, candidates: Vec<Candidate>) -> Result
         drop(evidence);
         judged.push(Judged { candidate, judgements, frames });
     }
+    bar.finish_and_clear();
     Ok(judged)
 }
 
