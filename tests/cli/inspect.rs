@@ -9,6 +9,7 @@ use serde_json::Value;
 
 mod common;
 mod flappy;
+mod more_bars;
 mod pictures;
 
 use common::prf;
@@ -60,10 +61,7 @@ fn scores_beside_frames_show_that_the_usual_settings_punish_progress() {
 fn rows_are_found_by_order_by_name_and_by_number() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path();
-    fs::create_dir(path.join("frames")).expect("the folder is ours");
-    for bars in 1..=9 {
-        pictures::bars(&path.join(format!("frames/{bars}.png")), bars);
-    }
+    more_bars::folder(&path.join("frames"), 1..=9);
     pictures::bars(&path.join("goal.png"), 9);
     let rows = |name: &dyn Fn(u32) -> String| (1..=9).map(|bars| format!("{}{bars}\n", name(bars))).collect::<String>();
     let write = |name: &str, text: String| fs::write(path.join(name), text).expect("the folder is ours");
@@ -115,10 +113,7 @@ fn a_threshold_makes_successes_of_scores() {
 fn a_demonstration_is_judged_by_its_order() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path();
-    fs::create_dir(path.join("demo")).expect("the folder is ours");
-    for bars in 1..=9 {
-        pictures::bars(&path.join(format!("demo/{bars}.png")), bars);
-    }
+    more_bars::folder(&path.join("demo"), 1..=9);
     pictures::bars(&path.join("goal.png"), 9);
     let args = ["inspect", "goal.png", "demo", "--demo", "--plot", "order.svg"];
     prf(path).args(args).assert().success().stdout(contains("rank correlation with time")).stdout(contains("1.000"));
@@ -227,8 +222,7 @@ fn goals_and_configs_that_cannot_be_judged_say_why() {
         .assert()
         .code(2)
         .stderr(contains("the goal shows nothing of 4 px or more"));
-    fs::create_dir(path.join("demo")).expect("the folder is ours");
-    (1..=3).for_each(|bars| pictures::bars(&path.join(format!("demo/{bars}.png")), bars));
+    more_bars::folder(&path.join("demo"), 1..=3);
     let large = ["inspect", "screen.png", "demo", "--demo", "--descriptor", "window"];
     prf(path).args(large).assert().code(1).stderr(contains("1.png").and(contains("84x84")).and(contains("40x40")));
 }
@@ -237,10 +231,7 @@ fn goals_and_configs_that_cannot_be_judged_say_why() {
 fn frames_that_cannot_be_read_are_left_out_with_exit_code_3() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path();
-    fs::create_dir(path.join("frames")).expect("the folder is ours");
-    for bars in [1, 2, 3, 5, 6] {
-        pictures::bars(&path.join(format!("frames/{bars}.png")), bars);
-    }
+    more_bars::folder(&path.join("frames"), [1, 2, 3, 5, 6]);
     fs::write(path.join("frames/4.png"), "no picture").expect("the folder is ours");
     pictures::bars(&path.join("goal.png"), 6);
     fs::write(path.join("scores.csv"), "score\n1\n2\n3\n4\n5\n6\n").expect("the folder is ours");
@@ -297,10 +288,7 @@ fn what_cannot_be_moved_is_not_called_misleading() {
 fn pictures_one_by_one_are_one_movement() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path();
-    fs::create_dir(path.join("move")).expect("the folder is ours");
-    for bars in 1..=9 {
-        pictures::bars(&path.join(format!("move/{bars}.png")), bars);
-    }
+    more_bars::folder(&path.join("move"), 1..=9);
     let files: Vec<String> = (1..=9).map(|bars| format!("move/{bars}.png")).collect();
     let files: Vec<&str> = files.iter().map(String::as_str).collect();
     let motion = ["inspect", "move", "--descriptor", "motion", "--demo"];

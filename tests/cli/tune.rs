@@ -9,6 +9,7 @@ use serde_json::Value;
 
 mod common;
 mod flappy;
+mod more_bars;
 mod pictures;
 
 use common::prf;
@@ -187,10 +188,7 @@ fn where_nothing_is_good_nothing_is_written() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path();
     // Scores that fall as the frames come nearer to the goal.
-    fs::create_dir(path.join("frames")).expect("the folder is ours");
-    for bars in 1..=9 {
-        pictures::bars(&path.join(format!("frames/{bars}.png")), bars);
-    }
+    more_bars::folder(&path.join("frames"), 1..=9);
     pictures::bars(&path.join("goal.png"), 9);
     let scores: String = (1..=9).map(|bars| format!("{}\n", -bars)).collect();
     fs::write(path.join("scores.csv"), "score\n".to_owned() + &scores).expect("the folder is ours");
