@@ -5,9 +5,13 @@ use prf_core::{Frame, Goal};
 use prf_envs::{EnvConfig, Environment, RewardConfig, StateConfig, Task, TaskConfig, registry};
 
 fn world(criterion: &mut Criterion) {
-    let mut world = registry::make(&EnvConfig::new("breakout")).expect("breakout exists");
+    registry::names().for_each(|name| measure(criterion, name));
+}
+
+fn measure(criterion: &mut Criterion, name: &str) {
+    let mut world = registry::make(&EnvConfig::new(name)).expect("the registry has it");
     let mut frame = Frame::new(world.spec().width, world.spec().height);
-    let mut group = criterion.benchmark_group("breakout");
+    let mut group = criterion.benchmark_group(name);
     group.throughput(Throughput::Elements(1));
     let mut seed = 0;
     world.reset(seed);
@@ -23,9 +27,10 @@ fn world(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Plays without a plan, which keeps the wall, and so the drawing, as large as it gets.
+/// Plays without a plan, which keeps Breakout's wall, and so the drawing, as large as it gets.
 fn step(world: &mut dyn Environment, seed: &mut u64) {
-    let step = world.step((*seed % 3) as usize).expect("the action exists");
+    let action = *seed as usize % world.spec().actions.len();
+    let step = world.step(action).expect("the action exists");
     if step.status.is_over() {
         *seed += 1;
         world.reset(*seed);

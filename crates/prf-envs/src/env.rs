@@ -1,6 +1,6 @@
 //! What every world is.
 
-use prf_core::Frame;
+use prf_core::{Frame, Label};
 
 use crate::Error;
 
@@ -80,4 +80,10 @@ pub trait Environment: Send {
 
     /// What the best known player would do now.
     fn oracle_action(&self) -> usize;
+
+    /// How near the task is to being done in this very state, to judge rewards of its picture by. Where the score says that, as by
+    /// default, that is all; where the score counts what was done before, a world says more.
+    fn label(&self, score: f32) -> Label {
+        Label { score: Some(f64::from(score)), success: None }
+    }
 }

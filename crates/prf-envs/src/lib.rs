@@ -18,6 +18,7 @@ mod bytes;
 pub mod check;
 mod env;
 mod error;
+pub mod flappy;
 pub mod players;
 pub mod raster;
 pub mod registry;

@@ -1,6 +1,7 @@
 //! The worlds by name.
 
 use crate::breakout::{self, Breakout};
+use crate::flappy::{self, Flappy};
 use crate::{EnvConfig, Environment, Error};
 
 struct Entry {
@@ -9,11 +10,18 @@ struct Entry {
     make: fn(u32) -> Result<Box<dyn Environment>, Error>,
 }
 
-const WORLDS: [Entry; 1] = [Entry {
-    name: breakout::NAME,
-    limit_steps: breakout::LIMIT_STEPS,
-    make: |limit_steps| Ok(Box::new(Breakout::new(limit_steps)?)),
-}];
+const WORLDS: [Entry; 2] = [
+    Entry {
+        name: breakout::NAME,
+        limit_steps: breakout::LIMIT_STEPS,
+        make: |limit_steps| Ok(Box::new(Breakout::new(limit_steps)?)),
+    },
+    Entry {
+        name: flappy::NAME,
+        limit_steps: flappy::LIMIT_STEPS,
+        make: |limit_steps| Ok(Box::new(Flappy::new(limit_steps)?)),
+    },
+];
 
 /// The names of all worlds.
 pub fn names() -> impl Iterator<Item = &'static str> {

@@ -15,8 +15,8 @@ const LONG_EPISODES: usize = 4;
 const LONG: u32 = 20_000;
 
 /// Takes about `frames` frames of the world that `config` describes, a third each of a random player, of a clumsy one (the oracle with
-/// every fifth action at random) and of the oracle, which plays beyond the config's limit until the task is finished. `label` says what the
-/// score at a frame means.
+/// every fifth action at random) and of the oracle, which plays beyond the config's limit until the task is finished. Each has what `label` makes
+/// of the world's own [label](Environment::label).
 ///
 /// The same seed gives the same frames.
 ///
@@ -26,7 +26,7 @@ pub fn survey(
     config: &EnvConfig,
     seed: u64,
     frames: usize,
-    label: impl Fn(f32) -> Label,
+    label: impl Fn(Label) -> Label,
     footage: &mut Footage,
 ) -> Result<(), Error> {
     let long = EnvConfig { limit_steps: config.limit_steps.max(LONG), ..config.clone() };
@@ -48,7 +48,7 @@ fn take(
     player: &mut dyn Player,
     seeds: &[u64],
     share: usize,
-    label: &impl Fn(f32) -> Label,
+    label: &impl Fn(Label) -> Label,
     footage: &mut Footage,
 ) -> Result<(), Error> {
     let mut world = registry::make(config)?;
@@ -66,7 +66,11 @@ fn take(
             // The last frame may be the only one that shows the finished task.
             let is_taken = index % stride == 0 || step.status.is_over();
             index += 1;
-            if is_taken { footage.observe(frame.view(), label(step.score)) } else { footage.pass(frame.view()) }
+            if is_taken {
+                footage.observe(frame.view(), label(world.label(step.score)))
+            } else {
+                footage.pass(frame.view())
+            }
         })?;
     }
     Ok(())
@@ -128,13 +132,9 @@ mod tests {
 
     use super::*;
 
-    fn scored(score: f32) -> Label {
-        Label { score: Some(f64::from(score)), success: None }
-    }
-
     fn surveyed(seed: u64, frames: usize) -> Footage {
         let mut footage = Footage::new(None, 2 * frames).expect("above 0");
-        survey(&EnvConfig::new("breakout"), seed, frames, scored, &mut footage).expect("the world is there");
+        survey(&EnvConfig::new("breakout"), seed, frames, |label| label, &mut footage).expect("the world is there");
         footage
     }
 
@@ -177,8 +177,9 @@ mod tests {
     #[test]
     fn an_unknown_world_is_named() {
         let mut footage = Footage::new(None, 10).expect("above 0");
-        let error =
-            survey(&EnvConfig::new("breakin"), 1, 10, scored, &mut footage).expect_err("there is none").to_string();
+        let error = survey(&EnvConfig::new("breakin"), 1, 10, |label| label, &mut footage)
+            .expect_err("there is none")
+            .to_string();
         assert!(error.contains("breakin"), "{error}");
     }
 }

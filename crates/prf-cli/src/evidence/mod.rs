@@ -116,10 +116,7 @@ impl Known {
 
     fn play(&mut self, env: &EnvConfig, args: &EvidenceArgs) -> Result<()> {
         self.kind = Kind::World(env.name.clone());
-        let label = |score| {
-            let score = Some(f64::from(score));
-            Label { score, success: reached(score, args.success_at) }
-        };
+        let label = |label: Label| Label { success: reached(label.score, args.success_at).or(label.success), ..label };
         Ok(survey(env, args.seed, args.sample as usize, label, &mut self.footage)?)
     }
 

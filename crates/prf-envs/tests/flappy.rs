@@ -1,0 +1,36 @@
+//! Flappy Bird as its users meet it.
+
+use prf_envs::players::{Oracle, Random, mean_score, play_episode};
+use prf_envs::{EnvConfig, Environment, Error, check, registry};
+
+fn make(limit_steps: u32) -> Result<Box<dyn Environment>, Error> {
+    registry::make(&EnvConfig { name: "flappy".to_owned(), limit_steps })
+}
+
+#[test]
+fn it_conforms() -> Result<(), Error> {
+    check::conformance(&make)
+}
+
+#[test]
+fn the_oracle_never_crashes() {
+    let mut world = make(5_000).expect("flappy exists");
+    for seed in 0..300 {
+        let episode = play_episode(world.as_mut(), &mut Oracle, seed).expect("the oracle's actions exist");
+        assert_eq!((episode.steps, episode.score), (5_000, 166.0), "seed {seed}");
+    }
+}
+
+#[test]
+fn ceiling_and_floor_are_far_apart() {
+    let mut world = make(5_000).expect("flappy exists");
+    let random = mean_score(world.as_mut(), &mut Random::new(), 0..1_000).expect("random actions exist");
+    assert!(random <= 0.2, "random {random}");
+}
+
+#[test]
+fn its_defaults_are_those_of_the_paper() {
+    assert_eq!(EnvConfig::new("flappy").limit_steps, 5_000);
+    let unknown = registry::make(&EnvConfig::new("flapy")).map(|_| ()).expect_err("no such world");
+    assert_eq!(unknown.to_string(), "env.name: got \"flapy\", expected \"breakout\" or \"flappy\"");
+}
