@@ -1,6 +1,8 @@
 //! Flappy Bird as its users meet it.
 
+use prf_core::{Footage, Label};
 use prf_envs::players::{Oracle, Random, mean_score, play_episode};
+use prf_envs::survey::survey;
 use prf_envs::{EnvConfig, Environment, Error, check, registry};
 
 fn make(limit_steps: u32) -> Result<Box<dyn Environment>, Error> {
@@ -26,6 +28,17 @@ fn ceiling_and_floor_are_far_apart() {
     let mut world = make(5_000).expect("flappy exists");
     let random = mean_score(world.as_mut(), &mut Random::new(), 0..1_000).expect("random actions exist");
     assert!(random <= 0.2, "random {random}");
+}
+
+#[test]
+fn a_survey_shows_what_a_reward_has_to_tell_apart() {
+    let mut footage = Footage::new(None, 1_000).expect("above 0");
+    survey(&EnvConfig::new("flappy"), 1, 300, |label| label, &mut footage).expect("the world is there");
+    let count = |holds: &dyn Fn(&Label) -> bool| footage.labels().iter().filter(|label| holds(label)).count();
+    assert!(count(&|label| label.success == Some(true)) > 20);
+    assert!(count(&|label| label.success == Some(false)) > 100);
+    assert!(count(&|label| label.score.is_some_and(|score| score <= -10.5)) > 5, "crashes are shown");
+    assert!(count(&|label| label.score.is_none()) > 50);
 }
 
 #[test]

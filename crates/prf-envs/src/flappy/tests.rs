@@ -89,6 +89,14 @@ fn gaps_are_drawn_from_all_heights() {
     assert_eq!(seen, (8..=50).collect());
 }
 
+/// What a seed means is part of the world's version.
+#[test]
+fn the_numbers_behind_a_seed_stay() {
+    let gaps: Vec<i32> = (0..6).map(|number| flight(0, 40).pipes(number).gap).collect();
+    let starts: Vec<i32> = (0..6).map(|seed| Bird::start(seed).top()).collect();
+    assert_eq!((gaps, starts), (vec![18, 32, 14, 48, 48, 26], vec![37, 34, 39, 48, 44, 35]));
+}
+
 #[test]
 fn rewards_are_those_of_the_paper() {
     let mut world = Flappy::new(100).expect("above 0");
