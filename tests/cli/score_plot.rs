@@ -137,6 +137,19 @@ fn a_picture_alone_is_a_point_and_several_are_a_curve() {
     let several = plot(&folder, &names, 3);
     assert_eq!((several.curves().count(), several.dots.len()), (1, 4));
     assert!(several.says("3 pictures"), "{:?}", several.texts);
+
+    // One that is lost keeps its place, also before all others: frames 0 to 3 have marks.
+    for names in [
+        ["frames/1.png", "missing.png", "frames/2.png", "frames/4.png"],
+        ["missing.png", "frames/1.png", "frames/2.png", "frames/4.png"],
+    ] {
+        let drawn = plot(&folder, &[&["goal.png"][..], &names].concat(), 3);
+        assert!(
+            drawn.texts.iter().any(|text| text == "3") && !drawn.texts.iter().any(|text| text == "4"),
+            "{:?}",
+            drawn.texts
+        );
+    }
 }
 
 #[test]

@@ -60,8 +60,8 @@ fn sides_take_turns() -> TestResult {
         asked.push(side);
         Ok((10 * side + asked.len()) as f64)
     })?;
-    assert_eq!(asked, [0, 1, 0, 1]);
-    assert_eq!(samples, [[1.0, 3.0], [12.0, 14.0]]);
+    assert_eq!(asked, [0, 1, 1, 0]);
+    assert_eq!(samples, [[1.0, 4.0], [12.0, 13.0]]);
     assert!(in_turns(3, |_| bail!("a worker died")).is_err());
     Ok(())
 }

@@ -20,7 +20,8 @@ impl Sample for f32 {
     const WHITE: f32 = 1.0;
 
     fn value(self) -> f32 {
-        self
+        // −0 becomes 0: a difference of −0 would turn a direction around.
+        self + 0.0
     }
 }
 

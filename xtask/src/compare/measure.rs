@@ -31,16 +31,16 @@ impl Plan {
     }
 }
 
-/// Asks side 0, then 1, then 0 again, `rounds` times, for the nanoseconds of a call: whatever else the machine does then
-/// disturbs both alike.
+/// Asks side 0, then 1, then 1 and 0, `rounds` times, for the nanoseconds of a call: whatever else the machine does then
+/// disturbs both alike, and neither is always the first of a pair.
 ///
 /// # Errors
 /// The first error of `ask`.
 pub fn in_turns(rounds: usize, mut ask: impl FnMut(usize) -> Result<f64>) -> Result<[Vec<f64>; 2]> {
     let mut samples = [Vec::with_capacity(rounds), Vec::with_capacity(rounds)];
-    for _ in 0..rounds {
-        for (side, samples) in samples.iter_mut().enumerate() {
-            samples.push(ask(side)?);
+    for round in 0..rounds {
+        for side in if round % 2 == 0 { [0, 1] } else { [1, 0] } {
+            samples[side].push(ask(side)?);
         }
     }
     Ok(samples)

@@ -30,7 +30,8 @@ use crate::{Error, FrameView, PlaneView};
 /// Computes HOGs (paper, section "HOG features") and keeps its working memory, so that after the first picture of a size
 /// nothing is allocated.
 ///
-/// Equal to `skimage.feature.hog` (`feature_vector=True`, `transform_sqrt=False`) to 1e-5.
+/// Equal to `skimage.feature.hog` (`feature_vector=True`, `transform_sqrt=False`) to 1e-5; of floats under L1-sqrt, whose slope has
+/// no limit at 0, to 1e-4.
 ///
 /// ```
 /// use prf_core::{CellSize, Hog, HogParams, Norm, PlaneView};

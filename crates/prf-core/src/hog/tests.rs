@@ -29,6 +29,20 @@ fn a_direction_on_a_border_belongs_to_the_bin_that_begins_there() {
     }
 }
 
+#[test]
+fn a_negative_zero_is_a_zero() {
+    let params = HogParams { orientations: 4, cell: CellSize::Px(1), norm: Norm::None, ..HogParams::default() };
+    let hog = |above: f32| {
+        let pixels = [0.0, above, 0.0, 0.0, 0.5, 1.0, 0.0, 0.0, 0.0];
+        let mut features = Vec::new();
+        let image = PlaneView::new(3, 3, &pixels).expect("finite");
+        Hog::new(params).expect("valid").compute_into(image, &mut features).expect("a cell fits");
+        features
+    };
+    assert_eq!(hog(0.0)[4 * 4..5 * 4], [1.0, 0.0, 0.0, 0.0]);
+    assert_eq!(hog(-0.0), hog(0.0));
+}
+
 /// Every instruction set of this machine gives the same bits.
 #[test]
 fn all_instruction_sets_give_the_same_bits() {

@@ -103,7 +103,7 @@ impl Environment for Flappy {
     fn label(&self, _: f32) -> Label {
         let flight = self.game.as_ref().map(|game| &game.flight);
         Label {
-            score: flight.and_then(|flight| flight.off_middle()).map(|off| -off),
+            score: flight.and_then(Flight::off_middle).map(|off| -off),
             success: flight.map(Flight::is_between_pipes),
         }
     }

@@ -17,6 +17,8 @@ pub(super) struct Curves {
     pictures: Option<usize>,
     /// Which of them is read now, if one is that isn't a single picture.
     open: Option<usize>,
+    /// Pictures that could not be scored before the first one that could.
+    lost_before: usize,
 }
 
 struct Source {
@@ -57,13 +59,16 @@ impl Curves {
         }
         self.begin(path);
         self.pictures = self.open.take();
-        self.sources.len() - 1
+        let at = self.sources.len() - 1;
+        self.sources[at].frames.resize(self.lost_before, None);
+        at
     }
 
     /// A frame, or a whole source, could not be scored.
     pub(super) fn lose(&mut self) {
-        if let Some(at) = self.open.or(self.pictures) {
-            self.sources[at].frames.push(None);
+        match self.open.or(self.pictures) {
+            Some(at) => self.sources[at].frames.push(None),
+            None => self.lost_before += 1,
         }
     }
 
