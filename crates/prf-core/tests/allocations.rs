@@ -5,7 +5,8 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 use prf_core::{
-    DescriptorParams, EmaState, Frame, MatchMethod, MotionParams, Plane, RewardParams, TemplateMatcher, WindowParams,
+    CellSize, DescriptorParams, EmaState, Frame, HogParams, MatchMethod, MotionParams, Norm, Plane, RewardParams,
+    TemplateMatcher, WindowParams,
 };
 
 thread_local! {
@@ -63,11 +64,13 @@ fn rewards_and_states_allocate_nothing_once_all_sizes_were_seen() {
     let frames: Vec<Frame> = [4, 20, 9, 30].map(|border| framed(noise(84, 70, border), border)).into();
     let goal = framed(noise(60, 48, 5), 12);
     let window = WindowParams { method: MatchMethod::CcoeffNormed };
-    for params in
-        [DescriptorParams::Direct, DescriptorParams::Window(window), DescriptorParams::Motion(MotionParams::default())]
-    {
-        let mut descriptor =
-            params.describe(&goal.clone().into(), RewardParams::default()).expect("a goal of many cells");
+    let hog = |px, block_cells, norm| HogParams { cell: CellSize::Px(px), block_cells, norm, ..HogParams::default() };
+    let hogs = [hog(1, 1, Norm::L2), hog(2, 1, Norm::L2), hog(5, 2, Norm::L2Hys)];
+    let descriptors =
+        [DescriptorParams::Direct, DescriptorParams::Window(window), DescriptorParams::Motion(MotionParams::default())];
+    for (params, hog) in descriptors.into_iter().flat_map(|params| hogs.map(|hog| (params, hog))) {
+        let reward = RewardParams { hog, ..RewardParams::default() };
+        let mut descriptor = params.describe(&goal.clone().into(), reward).expect("a goal of many cells");
         let mut state = EmaState::new(84, 70, 0.7).expect("valid");
         let mut before = 0;
         for pass in 0..2 {
@@ -80,7 +83,7 @@ fn rewards_and_states_allocate_nothing_once_all_sizes_were_seen() {
             }
             assert!(pass > 0 || ALLOCATIONS.get() > before, "nothing is counted");
         }
-        assert_eq!(ALLOCATIONS.get(), before, "{params:?}");
+        assert_eq!(ALLOCATIONS.get(), before, "{params:?}, {hog:?}");
     }
 }
 
