@@ -76,7 +76,17 @@ fn rows_are_found_by_order_by_name_and_by_number() {
     let few = judged("few.csv");
     assert_eq!((&few["frames"], &few["rank_correlation"]), (&Value::from(3), &Value::from(1.0)));
 
-    // The frames of an animation have numbers.
+    // The frames of a video have numbers, also where it doesn't say their times.
+    let bars = |count: u32| image::open(path.join(format!("frames/{count}.png"))).expect("a picture").to_luma8();
+    let video = (1..=9).flat_map(|count| [b"FRAME\n".to_vec(), bars(count).into_raw()].concat());
+    let video: Vec<u8> = b"YUV4MPEG2 W40 H40 Cmono XCOLORRANGE=FULL\n".iter().copied().chain(video).collect();
+    fs::write(path.join("timeless.y4m"), video).expect("the folder is ours");
+    let lines: String = (0..9).map(|number| format!("{number},{number}\n")).collect();
+    write("timeless.csv", "frame,score\n".to_owned() + &lines);
+    let timeless = record(path, &["inspect", "goal.png", "timeless.y4m", "--scores", "timeless.csv"]);
+    assert_eq!((&timeless["frames"], &timeless["rank_correlation"]), (&Value::from(9), &Value::from(1.0)));
+
+    // So have those of an animation.
     flappy::put_into(path);
     let table = fs::read_to_string(path.join("scores.csv")).expect("a table");
     let mut numbered: Vec<String> =

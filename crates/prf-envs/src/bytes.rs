@@ -1,6 +1,6 @@
 //! Reading saved states, in which every byte may be wrong.
 
-use crate::Error;
+use crate::{Error, Status};
 
 /// Takes values from the front of `bytes`; all numbers are little-endian.
 pub(crate) struct Reader<'a> {
@@ -40,6 +40,15 @@ impl<'a> Reader<'a> {
 
     pub(crate) fn u64(&mut self) -> Result<u64, Error> {
         self.array().map(u64::from_le_bytes)
+    }
+
+    pub(crate) fn status(&mut self) -> Result<Status, Error> {
+        Ok(match self.u8()? {
+            0 => Status::Running,
+            1 => Status::Terminated,
+            2 => Status::Truncated,
+            other => return Err(self.bad(format!("status {other}"), "0 to 2")),
+        })
     }
 
     /// The leading bytes that say what a state belongs to, and in which version of its layout.

@@ -125,7 +125,7 @@ impl Known {
         let mut index = 0;
         self.read(frames, printer, |seen| {
             let label = match seen {
-                Seen::Frame(info) => scores.label(info, index)?,
+                Seen::Frame { info, is_picture } => scores.label(info, is_picture, index)?,
                 Seen::Lost => None,
                 Seen::LostRest => {
                     scores.lose_count();
@@ -161,13 +161,13 @@ impl Known {
             let mut source = match FrameSource::open_within(path, limits) {
                 Ok(source) => source,
                 Err(error) => {
-                    label(if is_picture(path) { Seen::Lost } else { Seen::LostRest })?;
+                    label(if is_named_like_picture(path) { Seen::Lost } else { Seen::LostRest })?;
                     self.lose(&error.into(), printer);
                     continue;
                 }
             };
             // Single pictures, such as a shell's `*.png`, are one sequence.
-            let is_single = source.len_hint() == Some(1);
+            let (is_single, is_picture) = (source.len_hint() == Some(1), source.len_hint().is_some());
             if !(is_single && follows_picture) {
                 self.footage.begin();
             }
@@ -175,7 +175,7 @@ impl Known {
             while let Some(read) = source.next_into(&mut frame) {
                 match read {
                     Ok(info) => {
-                        let label = label(Seen::Frame(&info))?;
+                        let label = label(Seen::Frame { info: &info, is_picture })?;
                         let name = frame_name(&info, args.frames.len() == 1);
                         if let Err(error) = self.take(&frame, label, window, name) {
                             self.lose(&anyhow::anyhow!("{}: {error}", info.path.display()), printer);
@@ -231,7 +231,11 @@ type Frames<'a> = (&'a EvidenceArgs, Option<&'a Frame>);
 /// What comes next in the frames' order.
 #[derive(Clone, Copy)]
 enum Seen<'a> {
-    Frame(&'a FrameInfo),
+    Frame {
+        info: &'a FrameInfo,
+        /// In a file of its own.
+        is_picture: bool,
+    },
     /// One that can't be read.
     Lost,
     /// Nobody knows how many that can't be read.
@@ -239,7 +243,7 @@ enum Seen<'a> {
 }
 
 /// Whether a path that can't be opened was meant to be one frame.
-fn is_picture(path: &Path) -> bool {
+fn is_named_like_picture(path: &Path) -> bool {
     let ending = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
     ["png", "jpg", "jpeg", "bmp", "webp"].contains(&ending.as_str())
 }

@@ -60,12 +60,13 @@ impl Scores {
         Ok(scores)
     }
 
-    /// What is known of a frame, the `index`-th of all; nothing where the file doesn't say.
+    /// What is known of a frame, the `index`-th of all; nothing where the file doesn't say. One of an animation or a video is known by
+    /// its number.
     ///
     /// # Errors
     ///
     /// Failure when the frame's line can't be told any more.
-    pub(super) fn label(&mut self, info: &FrameInfo, index: usize) -> Result<Option<Label>> {
+    pub(super) fn label(&mut self, info: &FrameInfo, is_picture: bool, index: usize) -> Result<Option<Label>> {
         let line = match &self.named {
             None if self.is_lost => {
                 let message = format!("which line of {} belongs to {} can't be told", self.path, info.path.display());
@@ -74,7 +75,8 @@ impl Scores {
                     .into());
             }
             None => Some(index),
-            Some(lines) => names(info, index).iter().find_map(|name| lines.get(name)).copied(),
+            Some(lines) if is_picture => names(info).iter().find_map(|name| lines.get(name)).copied(),
+            Some(lines) => lines.get(&index.to_string()).copied(),
         };
         let Some((label, used)) = line.and_then(|line| Some((self.labels.get(line)?, self.used.get_mut(line)?))) else {
             return Ok(None);
@@ -91,7 +93,7 @@ impl Scores {
     /// Refuses a file that belongs to other frames: `frames` of them were there, and all could be read.
     pub(super) fn check(&self, frames: usize) -> Result<()> {
         let lines = self.labels.len();
-        let unused = self.named.iter().flatten().find(|&(_, &line)| !self.used[line]);
+        let unused = self.named.iter().flatten().filter(|&(_, &line)| !self.used[line]).min_by_key(|&(_, &line)| line);
         let message = match (&self.named, unused) {
             (None, _) if lines != frames => {
                 format!("{} has lines for {lines} frames, expected {frames}: one for each, in their order", self.path)
@@ -105,11 +107,8 @@ impl Scores {
     }
 }
 
-/// What a line may call a frame: by its path or its file with or without the ending; in an animation or a video, by its number.
-fn names(info: &FrameInfo, index: usize) -> Vec<String> {
-    if info.time_s.is_some() {
-        return vec![index.to_string()];
-    }
+/// What a line may call a picture: its path, or its file with or without the ending.
+fn names(info: &FrameInfo) -> Vec<String> {
     let part = |part: Option<&OsStr>| part.map(|part| part.to_string_lossy().into_owned());
     let path = info.path.to_string_lossy().into_owned();
     [Some(path), part(info.path.file_name()), part(info.path.file_stem())].into_iter().flatten().collect()

@@ -36,12 +36,7 @@ pub(super) fn load(bytes: &[u8], limit_steps: u32) -> Result<Option<Game>, Error
     let wall = Wall(reader.u64()?);
     let [paddle, x, y] = reader.array()?.map(|position: u8| i32::from(position));
     let [side_speed, heading] = reader.array()?.map(|speed: u8| i32::from(speed as i8));
-    let status = match reader.u8()? {
-        0 => Status::Running,
-        1 => Status::Terminated,
-        2 => Status::Truncated,
-        other => return Err(reader.bad(format!("status {other}"), "0 to 2")),
-    };
+    let status = reader.status()?;
     reader.finish()?;
     let ball = Ball { x, y, side_speed, heading };
     let game = Game { seed, steps, bounces, paddle, field: Field { wall, ball }, status };

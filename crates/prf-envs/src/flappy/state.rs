@@ -28,12 +28,7 @@ pub(super) fn load(bytes: &[u8], limit_steps: u32) -> Result<Option<Game>, Error
     }
     let (seed, steps, y) = (reader.u64()?, reader.u32()?, reader.u32()?);
     let speed = i32::from(reader.u8()? as i8);
-    let status = match reader.u8()? {
-        0 => Status::Running,
-        1 => Status::Terminated,
-        2 => Status::Truncated,
-        other => return Err(reader.bad(format!("status {other}"), "0 to 2")),
-    };
+    let status = reader.status()?;
     reader.finish()?;
     let (Some(y), Some(distance)) = (i32::try_from(y).ok(), steps.checked_mul(SPEED as u32)) else {
         return Err(reader.bad("values that no episode has", "the bird inside the field"));
