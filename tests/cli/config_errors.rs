@@ -176,7 +176,10 @@ fn errors_in_set_show_it_as_it_was_typed() {
         ("train.stepz=5", "unknown key `train.stepz`"),
         ("train.gamma=1.5", "`train.gamma`: got 1.5, expected "),
         ("train.reward_scale=0", "`train.reward_scale`: got 0, expected a finite number above 0"),
-        ("env.name=pong", "`env.name`: got \"pong\", expected \"breakout\" or \"flappy\""),
+        (
+            "env.name=pong",
+            "`env.name`: got \"pong\", expected \"breakout\" or \"flappy\" or \"kobian-happy\" or \"kobian-surprise\"",
+        ),
         ("train.steps", "there is no `=`"),
     ];
     for (set, told) in cases {

@@ -81,6 +81,20 @@ fn the_example_of_the_documentation() {
     assert_eq!(history_image(&template).as_slice(), [0, 142, 255, 255]);
 }
 
+/// A pixel that brightens by 20 a frame passes the threshold of 30 with every second frame, seen from the last one that counted.
+#[test]
+fn a_slow_movement_is_seen_once_it_is_large_enough() {
+    let params = MotionParams { skip_still: true, ..MotionParams::default() };
+    let mut template = MotionTemplate::new(params).unwrap();
+    let iterations = (0..7u8).map(|step| {
+        template.observe(frame(1, 1, &[20 * step]).view()).unwrap();
+        template.iterations()
+    });
+    assert_eq!(iterations.collect::<Vec<_>>(), [0, 0, 1, 1, 2, 2, 3]);
+    let error = template.observe(frame(2, 1, &[0, 0]).view()).unwrap_err();
+    assert!(matches!(error, Error::FrameSize { shape: [1, 2], expected: [1, 1] }), "{error}");
+}
+
 /// With both of the paper's schedules `μ_k < τ_t − δ_t` is `6 k < t − 5`: 0.1 + 0.4 k < 0.1 + 0.4 t − (t + 1)/3, and
 /// 0.1 + 0.3 k < 0.1 + 0.3 t − (t + 1)/4.
 #[test]
@@ -291,7 +305,7 @@ prop_compose! {
         amount in 0.01f64..9.0,
     ) -> MotionParams {
         let delta = if grows { DeltaSchedule::Divisor(amount) } else { DeltaSchedule::Duration(amount) };
-        MotionParams { threshold, tau_start, tau_step, delta }
+        MotionParams { threshold, tau_start, tau_step, delta, skip_still: false }
     }
 }
 
@@ -326,13 +340,24 @@ proptest! {
         prop_assert_eq!(template.iterations(), frames.len().saturating_sub(1) as u64);
     }
 
+    /// Frames that repeat the one before change nothing, wherever they stand.
+    #[test]
+    fn pauses_are_passed_over(frames in sequence(), params in any_params(), pauses in prop::collection::vec(0usize..3, 12)) {
+        let params = MotionParams { skip_still: true, ..params };
+        let repeats = pauses.into_iter().chain(std::iter::repeat(0));
+        let paused: Vec<Frame> =
+            frames.iter().zip(repeats).flat_map(|(frame, times)| std::iter::repeat_n(frame.clone(), times + 1)).collect();
+        let (without, with) = (template_of(&frames, params), template_of(&paused, params));
+        prop_assert_eq!(without.state(), with.state());
+    }
+
     #[test]
     fn frames_and_their_silhouettes_give_one_template(
         frames in sequence(), threshold in 0u8..=254, eighths in (1u8..9, 1u8..9, 0u8..40),
     ) {
         // Eighths are exact in 32 and in 64 bits, and many a movement is exactly as old as δ.
         let [tau_start, tau_step, duration] = <[u8; 3]>::from(eighths).map(|n| f64::from(n) / 8.0);
-        let params = MotionParams { threshold, tau_start, tau_step, delta: DeltaSchedule::Duration(duration) };
+        let params = MotionParams { threshold, tau_start, tau_step, delta: DeltaSchedule::Duration(duration), skip_still: false };
         let mut by_hand = MotionTemplate::new(params).unwrap();
         for (t, pair) in (0..).zip(frames.windows(2)) {
             let pixels = pair[0].as_slice().iter().zip(pair[1].as_slice());

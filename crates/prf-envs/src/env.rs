@@ -17,6 +17,8 @@ pub struct Spec {
     pub actions: &'static [&'static str],
     /// Steps after which an episode is truncated; at least 1.
     pub limit_steps: u32,
+    /// Whether chance plays a part, so that seeds give different episodes.
+    pub chance: bool,
 }
 
 /// Where an episode stands after a step.

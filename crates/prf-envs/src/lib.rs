@@ -16,9 +16,11 @@
 pub mod breakout;
 mod bytes;
 pub mod check;
+mod coverage;
 mod env;
 mod error;
 pub mod flappy;
+pub mod kobian;
 pub mod players;
 pub mod raster;
 pub mod registry;

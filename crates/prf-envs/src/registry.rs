@@ -2,6 +2,7 @@
 
 use crate::breakout::{self, Breakout};
 use crate::flappy::{self, Flappy};
+use crate::kobian::{self, Expression, Kobian};
 use crate::{EnvConfig, Environment, Error};
 
 struct Entry {
@@ -10,7 +11,7 @@ struct Entry {
     make: fn(u32) -> Result<Box<dyn Environment>, Error>,
 }
 
-const WORLDS: [Entry; 2] = [
+const WORLDS: [Entry; 4] = [
     Entry {
         name: breakout::NAME,
         limit_steps: breakout::LIMIT_STEPS,
@@ -20,6 +21,16 @@ const WORLDS: [Entry; 2] = [
         name: flappy::NAME,
         limit_steps: flappy::LIMIT_STEPS,
         make: |limit_steps| Ok(Box::new(Flappy::new(limit_steps)?)),
+    },
+    Entry {
+        name: Expression::Happy.name(),
+        limit_steps: kobian::LIMIT_STEPS,
+        make: |limit_steps| Ok(Box::new(Kobian::new(Expression::Happy, limit_steps)?)),
+    },
+    Entry {
+        name: Expression::Surprise.name(),
+        limit_steps: kobian::LIMIT_STEPS,
+        make: |limit_steps| Ok(Box::new(Kobian::new(Expression::Surprise, limit_steps)?)),
     },
 ];
 

@@ -2,9 +2,9 @@
 
 use prf_core::{Error as CoreError, Footage, Frame, Label};
 
-use crate::players::{Oracle, Player, Random, play_episode};
+use crate::players::{Oracle, Player, Random};
 use crate::rng::{ChaCha8Rng, below, stream, unit_f32};
-use crate::{EnvConfig, Environment, Error, Step, registry};
+use crate::{EnvConfig, Environment, Error, registry};
 
 /// How often the clumsy player does something at random.
 const CLUMSY: f32 = 0.2;
@@ -42,7 +42,8 @@ pub fn survey(
     Ok(())
 }
 
-/// `share` frames, evenly spread over a player's episodes, and the last of each.
+/// `share` frames, evenly spread over a player's episodes, and the last of each. A frame that looks like the one before it is none of them:
+/// an oracle may rest once the task is done.
 fn take(
     config: &EnvConfig,
     player: &mut dyn Player,
@@ -52,25 +53,23 @@ fn take(
     footage: &mut Footage,
 ) -> Result<(), Error> {
     let mut world = registry::make(config)?;
-    let mut steps = 0;
+    let mut count = 0;
     for &seed in seeds {
-        steps += play_episode(world.as_mut(), player, seed)?.steps as usize;
+        play(world.as_mut(), player, seed, |_, shown| {
+            count += usize::from(matches!(shown, Shown::News { .. }));
+            Ok(())
+        })?;
     }
-    let stride = (steps / share.max(1)).max(1);
-    let mut frame = Frame::new(world.spec().width, world.spec().height);
+    let stride = (count / share.max(1)).max(1);
     let mut index = 0;
     for &seed in seeds {
         footage.begin();
-        play(world.as_mut(), player, seed, |world, step| {
-            world.draw_into(&mut frame);
+        play(world.as_mut(), player, seed, |frame, shown| {
+            let Shown::News { label: found, is_last } = shown else { return footage.pass(frame.view()) };
             // The last frame may be the only one that shows the finished task.
-            let is_taken = index % stride == 0 || step.status.is_over();
+            let is_taken = index % stride == 0 || is_last;
             index += 1;
-            if is_taken {
-                footage.observe(frame.view(), label(world.label(step.score)))
-            } else {
-                footage.pass(frame.view())
-            }
+            if is_taken { footage.observe(frame.view(), label(found)) } else { footage.pass(frame.view()) }
         })?;
     }
     Ok(())
@@ -81,21 +80,40 @@ fn episode_seed(seed: u64, index: u64) -> u64 {
     below(&mut rng, 1 << 53) as u64
 }
 
-/// Plays an episode and shows the world after each step.
+/// What is new in a frame.
+enum Shown {
+    /// The episode's first frame, before any step, or one that looks like the one before it.
+    Nothing,
+    News {
+        label: Label,
+        is_last: bool,
+    },
+}
+
+/// Plays an episode and shows all its frames.
 fn play(
     world: &mut dyn Environment,
     player: &mut dyn Player,
     seed: u64,
-    mut look: impl FnMut(&dyn Environment, Step) -> Result<(), CoreError>,
+    mut look: impl FnMut(&Frame, Shown) -> Result<(), CoreError>,
 ) -> Result<(), Error> {
+    let mut frame = Frame::new(world.spec().width, world.spec().height);
     world.reset(seed);
     player.begin(seed);
+    world.draw_into(&mut frame);
+    look(&frame, Shown::Nothing)?;
+    let mut before = frame.clone();
     loop {
         let step = world.step(player.action(world))?;
-        look(world, step)?;
-        if step.status.is_over() {
+        let is_last = step.status.is_over();
+        world.draw_into(&mut frame);
+        let shown =
+            if frame == before { Shown::Nothing } else { Shown::News { label: world.label(step.score), is_last } };
+        look(&frame, shown)?;
+        if is_last {
             return Ok(());
         }
+        before.as_mut_slice().copy_from_slice(frame.as_slice());
     }
 }
 

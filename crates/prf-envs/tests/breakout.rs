@@ -120,7 +120,10 @@ fn a_state_needs_its_own_step_limit() {
 #[test]
 fn errors_name_what_was_wrong() {
     let unknown = registry::make(&EnvConfig::new("brakeout")).map(|_| ()).expect_err("no such world");
-    assert_eq!(unknown.to_string(), "env.name: got \"brakeout\", expected \"breakout\" or \"flappy\"");
+    assert_eq!(
+        unknown.to_string(),
+        "env.name: got \"brakeout\", expected \"breakout\" or \"flappy\" or \"kobian-happy\" or \"kobian-surprise\""
+    );
     let endless = make(0).map(|_| ()).expect_err("no steps");
     assert_eq!(endless.to_string(), "env.limit_steps: got 0, expected at least 1");
     let mut world = breakout(100);

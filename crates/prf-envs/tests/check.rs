@@ -83,7 +83,7 @@ impl Environment for Flawed {
 #[test]
 fn each_flaw_is_found() {
     for (flaw, rule) in [
-        (Flaw::IgnoresSeed, "seeds start differently"),
+        (Flaw::IgnoresSeed, "seeds start differently where chance plays a part, else alike"),
         (Flaw::KeepsOldPicture, "a drawing covers the whole frame, at any size"),
         (Flaw::ForgetsPaddle, "a restored state goes on in the same way"),
         (Flaw::StepsAfterEnd, "after the end only a reset helps"),

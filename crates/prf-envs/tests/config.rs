@@ -154,7 +154,10 @@ fn values_out_of_range_are_named_by_their_full_key() {
         change(&mut config);
         assert_eq!(complaint(&config), expected);
     };
-    check(|c| c.env = EnvConfig::new("pong"), "env.name: got \"pong\", expected \"breakout\" or \"flappy\"");
+    check(
+        |c| c.env = EnvConfig::new("pong"),
+        "env.name: got \"pong\", expected \"breakout\" or \"flappy\" or \"kobian-happy\" or \"kobian-surprise\"",
+    );
     check(|c| c.env.limit_steps = 0, "env.limit_steps: got 0, expected at least 1");
     check(
         |c| c.reward.descriptor = None,

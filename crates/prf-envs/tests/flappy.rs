@@ -45,5 +45,8 @@ fn a_survey_shows_what_a_reward_has_to_tell_apart() {
 fn its_defaults_are_those_of_the_paper() {
     assert_eq!(EnvConfig::new("flappy").limit_steps, 5_000);
     let unknown = registry::make(&EnvConfig::new("flapy")).map(|_| ()).expect_err("no such world");
-    assert_eq!(unknown.to_string(), "env.name: got \"flapy\", expected \"breakout\" or \"flappy\"");
+    assert_eq!(
+        unknown.to_string(),
+        "env.name: got \"flapy\", expected \"breakout\" or \"flappy\" or \"kobian-happy\" or \"kobian-surprise\""
+    );
 }

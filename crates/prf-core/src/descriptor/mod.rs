@@ -32,6 +32,17 @@ pub trait TaskDescriptor: Send {
     /// Begins an episode: what was seen before no longer counts.
     fn reset(&mut self);
 
+    /// Takes in what the agent's world looks like now without scoring it: so motion sees what the first step moves. The others remember
+    /// nothing.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::FrameSize`] as [`observe`](TaskDescriptor::observe).
+    fn pass(&mut self, mirror: FrameView<'_>) -> Result<(), Error> {
+        let _ = mirror;
+        Ok(())
+    }
+
     /// Takes in what the agent's world looks like now and scores it.
     ///
     /// # Errors

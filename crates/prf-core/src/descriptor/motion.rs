@@ -1,7 +1,5 @@
 //! The goal is a movement.
 
-mod bytes;
-
 use super::comparison::Comparison;
 use super::{Explanation, TaskDescriptor};
 use crate::{Error, Frame, FrameView, MotionParams, MotionTemplate, RewardParams, Score};
@@ -70,6 +68,10 @@ impl TaskDescriptor for MotionDescriptor {
         self.motion.reset();
     }
 
+    fn pass(&mut self, mirror: FrameView<'_>) -> Result<(), Error> {
+        self.motion.observe(mirror)
+    }
+
     fn observe(&mut self, mirror: FrameView<'_>) -> Result<Score, Error> {
         self.motion.observe(mirror)?;
         self.motion.history_into(&mut self.template);
@@ -81,11 +83,11 @@ impl TaskDescriptor for MotionDescriptor {
     }
 
     fn save_state(&self) -> Vec<u8> {
-        bytes::write(self.motion.state())
+        self.motion.save_state()
     }
 
     fn load_state(&mut self, bytes: &[u8]) -> Result<(), Error> {
-        self.motion.restore(&bytes::read(bytes)?)
+        self.motion.load_state(bytes)
     }
 }
 
@@ -134,6 +136,16 @@ mod tests {
         }
         resumed.load_state(&descriptor().save_state()).expect("of an episode's beginning");
         assert_eq!(score(&mut resumed, 0), score(&mut descriptor(), 0));
+    }
+
+    #[test]
+    fn a_frame_that_is_passed_is_seen_and_not_scored() {
+        let (mut scored, mut passed) = (descriptor(), descriptor());
+        for step in 0..3 {
+            score(&mut scored, step);
+            passed.pass(frame(step).view()).expect("one size");
+        }
+        assert_eq!(score(&mut scored, 3), score(&mut passed, 3));
     }
 
     #[test]

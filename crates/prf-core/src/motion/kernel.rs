@@ -64,6 +64,24 @@ fn observe_block(frame: &[u8], threshold: u8, reference: &mut [u8], history: &mu
     }
 }
 
+/// Whether any byte differs by more than `threshold` between `reference` and `frame`, of the same length.
+pub(super) struct Moves<'a> {
+    pub(super) frame: &'a [u8],
+    pub(super) threshold: u8,
+    pub(super) reference: &'a [u8],
+}
+
+impl Kernel for Moves<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run(self) -> bool {
+        let largest =
+            self.frame.iter().zip(self.reference).fold(0, |largest, (&now, &before)| now.abs_diff(before).max(largest));
+        largest > self.threshold
+    }
+}
+
 /// Moves `history` on by a silhouette, which is not 0 where something moved.
 pub(super) struct Update<'a> {
     pub(super) silhouette: &'a [u8],
@@ -141,6 +159,8 @@ mod tests {
 
                 let (mut reference, mut observed) = (before.clone(), history.clone());
                 let (threshold, frame) = (60, &frame[..]);
+                let moves = simd.run(Moves { frame, threshold, reference: &reference });
+                assert_eq!(moves, (0..len).any(moved), "{simd:?}, {len} pixels");
                 simd.run(Observe { frame, threshold, reference: &mut reference, history: &mut observed, moment });
                 assert_eq!((&observed, &reference[..]), (&expected, frame), "{simd:?}, {len} pixels");
 

@@ -1,5 +1,6 @@
 //! Motion templates (paper, section "Motion templates"; Davis, 1999; Bobick and Davis, 2001).
 
+mod bytes;
 mod kernel;
 mod params;
 mod state;
@@ -7,7 +8,7 @@ mod state;
 pub use params::{DeltaSchedule, MotionParams};
 pub use state::MotionState;
 
-use kernel::{EnergyBytes, HistoryBytes, Moment, Observe, Update};
+use kernel::{EnergyBytes, HistoryBytes, Moment, Moves, Observe, Update};
 
 use crate::simd::Simd;
 use crate::{Error, Frame, FrameView};
@@ -86,7 +87,8 @@ impl MotionTemplate {
     }
 
     /// Takes in the next frame of the sequence, at the schedule's next `τ` and `δ`. The first frame
-    /// is only what the second one is compared with.
+    /// is only what the second one is compared with. With [`skip_still`](MotionParams::skip_still), a frame without movement changes
+    /// nothing: the next one is compared with what this one was compared with, so that a slow movement is seen in the end.
     ///
     /// # Errors
     ///
@@ -97,6 +99,9 @@ impl MotionTemplate {
         if self.state.reference.is_empty() {
             self.fit(frame)?;
             self.state.reference.extend_from_slice(frame.as_slice());
+            return Ok(());
+        }
+        if self.params.skip_still && self.is_still(frame)? {
             return Ok(());
         }
         let moment = self.scheduled();
@@ -163,7 +168,8 @@ impl MotionTemplate {
         self.state.shape
     }
 
-    /// How many silhouettes have been taken in; of frames that were observed, one fewer than there were.
+    /// How many silhouettes have been taken in; of frames that were observed, one fewer than there
+    /// were, without those that were passed over.
     #[must_use]
     pub fn iterations(&self) -> u64 {
         self.state.iterations
@@ -199,11 +205,32 @@ impl MotionTemplate {
         Ok(())
     }
 
+    /// The [`state`](MotionTemplate::state) as bytes.
+    #[must_use]
+    pub fn save_state(&self) -> Vec<u8> {
+        bytes::write(&self.state)
+    }
+
+    /// Takes up what [`save_state`](MotionTemplate::save_state) gave.
+    ///
+    /// # Errors
+    ///
+    /// As [`MotionTemplate::restore`], also when the bytes are none that it gives.
+    pub fn load_state(&mut self, bytes: &[u8]) -> Result<(), Error> {
+        self.restore(&bytes::read(bytes)?)
+    }
+
     /// The times of the schedule's next iteration, each rounded once.
     fn scheduled(&self) -> Moment {
         let t = self.state.iterations;
         let (tau, delta) = (self.params.tau(t), self.params.delta.delta(t));
         Moment { now: tau as f32, oldest: (tau - delta) as f32 }
+    }
+
+    fn is_still(&mut self, frame: FrameView<'_>) -> Result<bool, Error> {
+        self.fit(frame)?;
+        let (frame, threshold, reference) = (frame.as_slice(), self.params.threshold, &self.state.reference[..]);
+        Ok(!self.simd.run(Moves { frame, threshold, reference }))
     }
 
     /// Checks an iteration and notes its time.

@@ -36,6 +36,10 @@ pub struct MotionParams {
     pub tau_step: f64,
     /// How long a movement is remembered, in the unit of `τ`.
     pub delta: DeltaSchedule,
+    /// A frame in which nothing has moved since the last one that counted is passed over: it is no iteration, and nothing grows older
+    /// by it. So an agent that rests keeps its template (the paper's no-op action "did not effect its face or motion
+    /// template"), and a video may begin and end with a pause.
+    pub skip_still: bool,
 }
 
 impl Default for MotionParams {
@@ -43,7 +47,13 @@ impl Default for MotionParams {
     /// 0.3 and 4. With both, a movement of iteration `k` is remembered up to iteration `6 k + 5`. The paper leaves the
     /// threshold open; 30 of 255 is a common choice against a camera's noise.
     fn default() -> MotionParams {
-        MotionParams { threshold: 30, tau_start: 0.1, tau_step: 0.4, delta: DeltaSchedule::Divisor(3.0) }
+        MotionParams {
+            threshold: 30,
+            tau_start: 0.1,
+            tau_step: 0.4,
+            delta: DeltaSchedule::Divisor(3.0),
+            skip_still: false,
+        }
     }
 }
 
@@ -158,7 +168,7 @@ mod tests {
     #[test]
     fn every_value_survives_a_file() {
         for delta in [DeltaSchedule::Divisor(3.0), DeltaSchedule::Duration(0.7)] {
-            let params = MotionParams { threshold: 12, tau_start: 0.3, tau_step: 0.1, delta };
+            let params = MotionParams { threshold: 12, tau_start: 0.3, tau_step: 0.1, delta, skip_still: true };
             let json = serde_json::to_string(&params).expect("plain values");
             assert_eq!(serde_json::from_str::<MotionParams>(&json).expect("what was written"), params);
         }

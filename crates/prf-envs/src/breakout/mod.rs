@@ -71,6 +71,7 @@ impl Breakout {
             height: physics::FIELD as usize,
             actions: &ACTIONS,
             limit_steps,
+            chance: true,
         };
         Ok(Breakout { spec, game: None })
     }

@@ -53,7 +53,10 @@ impl Flappy {
             return Err(Error::param("env.limit_steps", "0", "at least 1"));
         }
         let side = physics::FIELD as usize;
-        Ok(Flappy { spec: Spec { name: NAME, width: side, height: side, actions: &ACTIONS, limit_steps }, game: None })
+        Ok(Flappy {
+            spec: Spec { name: NAME, width: side, height: side, actions: &ACTIONS, limit_steps, chance: true },
+            game: None,
+        })
     }
 }
 

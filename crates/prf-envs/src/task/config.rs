@@ -270,6 +270,8 @@ pub enum StateKind {
     Ema,
     /// The mirror frame as it is.
     Mirror,
+    /// The motion template of the episode so far, with the parameters in `[reward.motion]` if there are any: the paper's `T_A`.
+    Motion,
 }
 
 fn required(key: &str, given: bool, expected: &str) -> Result<(), ParamError> {

@@ -11,7 +11,7 @@ use crate::bytes::Reader;
 use crate::{Environment, Error, Spec, Status, registry};
 
 /// Marks a task's state and the version of its layout.
-const TAG: &[u8] = b"task1";
+const TAG: &[u8] = b"task2";
 
 /// What one step of a task brought.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,7 +71,7 @@ impl Task {
             environment,
             reward: Reward::new(&config.reward, goal, [height, width])?,
             mirror: Frame::new(width, height),
-            state: Representation::new(&config.state, width, height)?,
+            state: Representation::new(config, width, height)?,
         })
     }
 
@@ -88,6 +88,9 @@ impl Task {
         }
         self.state.reset();
         self.look();
+        if let Reward::Perceptual(descriptor) = &mut self.reward {
+            descriptor.pass(self.mirror.view()).expect("a new episode takes frames of any size");
+        }
     }
 
     /// Plays one step with `action`, an index into [`Spec::actions`].

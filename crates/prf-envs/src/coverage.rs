@@ -1,0 +1,111 @@
+//! Filling smooth shapes: how much of each pixel lies inside an outline.
+
+use prf_core::Frame;
+
+/// Fills outlines. Its memory is kept from one to the next.
+///
+/// Each edge adds to the pixels that it crosses what it changes of their coverage, so that a running sum along a row is
+/// the coverage itself: exact for straight edges, in one pass over the outline's box.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Coverage {
+    /// The outline's box, in pixels: left column, top row, width and height.
+    area: [usize; 4],
+    /// What changes from each pixel to its right neighbour, with one column more than the box has.
+    changes: Vec<f32>,
+}
+
+impl Coverage {
+    /// Fills the inside of a closed outline, `[x, y]` in pixels of the frame, with `grey`; pixels on its edge get as much of it as they are
+    /// covered. What lies outside the frame is cut off. Outlines go round once, in either direction.
+    pub(crate) fn fill(&mut self, frame: &mut Frame, outline: &[[f32; 2]], grey: u8) {
+        if !self.begin(frame, outline) {
+            return;
+        }
+        let mut from = outline[outline.len() - 1];
+        for &to in outline {
+            self.edge(from, to);
+            from = to;
+        }
+        self.blend(frame, grey);
+    }
+
+    /// Prepares the outline's box; `false` if nothing of it is inside the frame.
+    fn begin(&mut self, frame: &Frame, outline: &[[f32; 2]]) -> bool {
+        let range = |axis: usize, side: usize| {
+            let values = || outline.iter().map(|point| point[axis]);
+            let first = values().fold(f32::INFINITY, f32::min).floor().clamp(0.0, side as f32);
+            let end = values().fold(f32::NEG_INFINITY, f32::max).ceil().clamp(0.0, side as f32);
+            (first as usize, (end - first).max(0.0) as usize)
+        };
+        let ((left, width), (top, height)) = (range(0, frame.width()), range(1, frame.height()));
+        self.area = [left, top, width, height];
+        self.changes.clear();
+        self.changes.resize((width + 1) * height, 0.0);
+        width > 0 && height > 0
+    }
+
+    fn edge(&mut self, from: [f32; 2], to: [f32; 2]) {
+        let [left, top, width, height] = self.area;
+        let local = |[x, y]: [f32; 2]| [x - left as f32, y - top as f32];
+        let (from, to) = (local(from), local(to));
+        if from[1] == to[1] {
+            return;
+        }
+        let (upper, lower, direction) = if from[1] < to[1] { (from, to, 1.0) } else { (to, from, -1.0) };
+        let slope = (lower[0] - upper[0]) / (lower[1] - upper[1]);
+        let (start, end) = (upper[1].clamp(0.0, height as f32), lower[1].clamp(0.0, height as f32));
+        let mut x = upper[0] + (start - upper[1]) * slope;
+        for row in start as usize..height.min(end.ceil() as usize) {
+            let share = (end.min(row as f32 + 1.0) - start.max(row as f32)).max(0.0);
+            let next = x + share * slope;
+            let changes = &mut self.changes[row * (width + 1)..][..width + 1];
+            let limit = width as f32;
+            add_to_row(changes, x.min(next).clamp(0.0, limit), x.max(next).clamp(0.0, limit), direction * share);
+            x = next;
+        }
+    }
+
+    fn blend(&self, frame: &mut Frame, grey: u8) {
+        let [left, top, width, _] = self.area;
+        let grey = f32::from(grey);
+        for (y, changes) in self.changes.chunks_exact(width + 1).enumerate() {
+            let row = &mut frame.row_mut(top + y)[left..left + width];
+            let mut sum = 0.0;
+            for (pixel, &change) in row.iter_mut().zip(changes) {
+                sum += change;
+                let covered = f32::abs(sum).min(1.0);
+                let before = f32::from(*pixel);
+                *pixel = (before + (grey - before) * covered + 0.5) as u8;
+            }
+        }
+    }
+}
+
+/// Adds an edge that crosses a part `share` (with its direction's sign) of a row's height, from column `left` to column `right`. All that is right of it
+/// is covered by the share, a pixel that it crosses by what of the pixel is right of it.
+fn add_to_row(changes: &mut [f32], left: f32, right: f32, share: f32) {
+    let (first, last) = (left as usize, right.ceil() as usize);
+    if last <= first + 1 {
+        // Within one pixel: the middle of the edge decides.
+        let uncovered = (left + right) / 2.0 - first as f32;
+        changes[first] += share * (1.0 - uncovered);
+        if let Some(next) = changes.get_mut(first + 1) {
+            *next += share * uncovered;
+        }
+        return;
+    }
+    let per_column = share / (right - left);
+    // What is covered of the pixel's column, from the edge's first one on.
+    let mut before = 0.0;
+    for column in first..last {
+        let crossed_here = right.min(column as f32 + 1.0) - left.max(column as f32);
+        let crossed_before = left.max(column as f32) - left;
+        let here_middle = left.max(column as f32) + crossed_here / 2.0;
+        let covered = per_column * (crossed_before + crossed_here * (column as f32 + 1.0 - here_middle));
+        changes[column] += covered - before;
+        before = covered;
+    }
+    if let Some(next) = changes.get_mut(last) {
+        *next += share - before;
+    }
+}

@@ -1,0 +1,191 @@
+//! A robot's face in the manner of Kobian's, whose brows and mouth move (paper, section "Motion template task").
+//! `docs/worlds/kobian.md` describes it for users.
+
+mod curve;
+mod draw;
+mod face;
+mod oracle;
+mod state;
+#[cfg(test)]
+mod tests;
+
+use std::cell::RefCell;
+
+use prf_core::{Frame, Label};
+
+use self::draw::Painter;
+pub use self::face::{Displacement, Face, MOVEMENTS, Point, VERTICES};
+use self::face::{FIELD, mean_distance};
+use crate::{Environment, Error, Spec, Status, Step};
+
+/// Steps of an episode unless the config says otherwise: the paper's.
+pub const LIMIT_STEPS: u32 = 10;
+
+const REST: usize = 0;
+const ACTIONS: [&str; 1 + 2 * MOVEMENTS] = [
+    "rest",
+    "raise-brows",
+    "lower-brows",
+    "raise-inner-brows",
+    "lower-inner-brows",
+    "raise-outer-brows",
+    "lower-outer-brows",
+    "widen-mouth",
+    "narrow-mouth",
+    "raise-mouth-corners",
+    "lower-mouth-corners",
+    "open-mouth",
+    "close-mouth",
+];
+
+/// What the face is to express. Each is a world of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Expression {
+    /// A wide mouth, slightly open, with its corners up, and the brows a little raised.
+    Happy,
+    /// Brows raised high, and a mouth that is narrow and wide open.
+    Surprise,
+}
+
+impl Expression {
+    /// Name of the world, in a config.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Expression::Happy => "kobian-happy",
+            Expression::Surprise => "kobian-surprise",
+        }
+    }
+
+    /// The face to be made.
+    #[must_use]
+    pub fn target(self) -> Face {
+        let levels = match self {
+            Expression::Happy => [1, 0, 0, 3, 2, 1],
+            Expression::Surprise => [3, 0, 0, -1, 0, 4],
+        };
+        Face::new(levels).unwrap_or_default()
+    }
+}
+
+/// The world of one expression.
+#[derive(Clone, Debug)]
+pub struct Kobian {
+    spec: Spec,
+    expression: Expression,
+    target: Target,
+    episode: Option<Episode>,
+    painter: RefCell<Painter>,
+}
+
+/// The face to be made, with what a step asks of it.
+#[derive(Clone, Copy, Debug)]
+struct Target {
+    face: Face,
+    vertices: [Point; VERTICES],
+    /// How far from it the neutral face is.
+    neutral_distance: f32,
+}
+
+impl Target {
+    fn of(expression: Expression) -> Target {
+        let face = expression.target();
+        Target { face, vertices: face.vertices(), neutral_distance: Face::default().distance_to(face) }
+    }
+
+    /// The variable reward: 1 at the target, 0 as far from it as the neutral face is, and below 0 beyond.
+    fn closeness(&self, face: Face) -> f32 {
+        1.0 - mean_distance(&face.vertices(), &self.vertices) / self.neutral_distance
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Episode {
+    face: Face,
+    steps: u32,
+    status: Status,
+}
+
+impl Kobian {
+    /// A world whose episodes are truncated after `limit_steps` steps.
+    ///
+    /// # Errors
+    /// `limit_steps` is 0.
+    pub fn new(expression: Expression, limit_steps: u32) -> Result<Kobian, Error> {
+        if limit_steps == 0 {
+            return Err(Error::param("env.limit_steps", "0", "at least 1"));
+        }
+        let side = FIELD as usize;
+        let spec =
+            Spec { name: expression.name(), width: side, height: side, actions: &ACTIONS, limit_steps, chance: false };
+        Ok(Kobian { spec, expression, target: Target::of(expression), episode: None, painter: RefCell::default() })
+    }
+
+    /// The face now; none before the first episode.
+    #[must_use]
+    pub fn face(&self) -> Option<Face> {
+        self.episode.map(|episode| episode.face)
+    }
+}
+
+impl Environment for Kobian {
+    fn spec(&self) -> &Spec {
+        &self.spec
+    }
+
+    /// Every episode begins with the neutral face, whatever the seed.
+    fn reset(&mut self, _: u64) {
+        self.episode = Some(Episode { face: Face::default(), steps: 0, status: Status::Running });
+    }
+
+    fn step(&mut self, action: usize) -> Result<Step, Error> {
+        let world = self.spec.name;
+        if action >= ACTIONS.len() {
+            return Err(Error::UnknownAction { world, got: action, last: ACTIONS.len() - 1 });
+        }
+        let episode = self.episode.as_mut().ok_or(Error::NotReset { world })?;
+        if episode.status.is_over() {
+            return Err(Error::EpisodeOver { world });
+        }
+        if action != REST {
+            episode.face.shift((action - 1) / 2, action % 2 == 1);
+        }
+        episode.steps += 1;
+        if episode.steps >= self.spec.limit_steps {
+            episode.status = Status::Truncated;
+        }
+        let Episode { face, status, .. } = *episode;
+        let score = -(face.actions_to(self.target.face) as f32);
+        Ok(Step { reward: self.target.closeness(face), score, status })
+    }
+
+    fn draw_into(&self, frame: &mut Frame) {
+        match self.episode {
+            Some(episode) => self.painter.borrow_mut().paint(episode.face, frame),
+            None => frame.fill(0),
+        }
+    }
+
+    fn save_state(&self) -> Vec<u8> {
+        state::save(self.expression, self.episode.as_ref())
+    }
+
+    fn load_state(&mut self, bytes: &[u8]) -> Result<(), Error> {
+        self.episode = state::load(self.expression, bytes, self.spec.limit_steps)?;
+        Ok(())
+    }
+
+    fn oracle_action(&self) -> usize {
+        let missing = self.face().and_then(|face| oracle::next(face, self.target.face));
+        missing.map_or(REST, |(movement, up)| 1 + 2 * movement + usize::from(!up))
+    }
+
+    /// The score is minus the mean distance of the vertices from the target's, in pixels; a success is to be within one action of it.
+    fn label(&self, _: f32) -> Label {
+        let (face, target) = (self.face(), self.target.face);
+        Label {
+            score: face.map(|face| -f64::from(face.distance_to(target))),
+            success: face.map(|face| face.actions_to(target) <= 1),
+        }
+    }
+}
