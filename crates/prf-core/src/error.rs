@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
+pub use self::sequence::SequenceProblem;
 #[cfg(feature = "io")]
 pub(crate) use self::sequence::{DIVISOR, DURATION};
-pub use self::sequence::SequenceProblem;
 
 mod sequence;
 

@@ -100,9 +100,7 @@ fn damaged_frames_are_named_or_left_out() {
     let folder = folder(&slices(&frames));
     let bytes = fs::read(folder.path().join("3.png")).unwrap();
     fs::write(folder.path().join("3.png"), &bytes[..bytes.len() / 2]).unwrap();
-    let is_third = |error: &Error| {
-        matches!(error, Error::Picture { path, problem: PictureProblem::Truncated { .. } } if path.ends_with("3.png"))
-    };
+    let is_third = |error: &Error| matches!(error, Error::Picture { path, problem: PictureProblem::Truncated { .. } } if path.ends_with("3.png"));
     let error = read_motion(folder.path(), MotionParams::default(), false).unwrap_err();
     assert!(is_third(&error), "{error}");
 

@@ -51,11 +51,7 @@ pub struct MotionSequence {
 /// # Errors
 ///
 /// As [`MotionSequence::of`], and as [`FrameSource::open`].
-pub fn read_motion(
-    path: impl AsRef<Path>,
-    params: MotionParams,
-    skip_damaged: bool,
-) -> Result<MotionSequence, Error> {
+pub fn read_motion(path: impl AsRef<Path>, params: MotionParams, skip_damaged: bool) -> Result<MotionSequence, Error> {
     MotionSequence::of(FrameSource::open(path)?, params, skip_damaged)
 }
 
