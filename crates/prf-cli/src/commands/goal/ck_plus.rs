@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use prf_core::io::FrameSource;
-use prf_core::io::ck_plus::{Selection, Sequence, list};
+use prf_core::io::ck_plus::{Emotion, Selection, Sequence, list};
 use prf_core::{DeltaSchedule, MotionParams};
 use serde::Serialize;
 
@@ -66,7 +66,7 @@ struct Record<'a> {
 impl<'a> From<&'a Sequence> for Record<'a> {
     fn from(sequence: &'a Sequence) -> Self {
         let Sequence { subject, session, folder, frames, emotion } = sequence;
-        let (emotion, folder) = (emotion.map(|emotion| emotion.name()), folder.to_string_lossy().into_owned());
+        let (emotion, folder) = (emotion.map(Emotion::name), folder.to_string_lossy().into_owned());
         Self { subject, session, emotion, frames: *frames, folder }
     }
 }
@@ -90,7 +90,7 @@ fn print(sequences: &[Sequence], printer: &mut Printer) -> Result<()> {
     }
     printer.line("subject  session  emotion   frames  folder")?;
     sequences.iter().try_for_each(|sequence| {
-        let emotion = sequence.emotion.map_or("-", |emotion| emotion.name());
+        let emotion = sequence.emotion.map_or("-", Emotion::name);
         let Sequence { subject, session, frames, folder, .. } = sequence;
         printer.line(format_args!("{subject:7}  {session:7}  {emotion:8}  {frames:>6}  {}", folder.display()))
     })
@@ -99,7 +99,7 @@ fn print(sequences: &[Sequence], printer: &mut Printer) -> Result<()> {
 fn many_fit(root: &Path, sequences: &[Sequence]) -> CliError {
     let mut message = format!("{} sequences of {} fit, expected one", sequences.len(), root.display());
     for Sequence { subject, session, frames, emotion, .. } in sequences.iter().take(SHOWN) {
-        let emotion = emotion.map_or("no label", |emotion| emotion.name());
+        let emotion = emotion.map_or("no label", Emotion::name);
         message.push_str(&format!("\n  {subject} {session}  {emotion}, {frames} frames"));
     }
     if sequences.len() > SHOWN {
