@@ -4,6 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use assert_cmd::assert::Assert;
+use image::{GrayImage, Luma};
 use predicates::prelude::*;
 use predicates::str::{contains, is_empty, starts_with};
 use tempfile::TempDir;
@@ -153,6 +154,35 @@ fn a_goal_that_is_broken_is_a_failure() {
             .stdout(is_empty())
             .stderr(starts_with("error: c.toml:7:8: ").and(contains(goal)).and(contains(told)));
     }
+}
+
+#[test]
+fn a_window_larger_than_the_screen_is_misuse() {
+    let folder = folder();
+    GrayImage::from_fn(100, 90, |x, y| Luma([(x * y % 251) as u8]))
+        .save(folder.path().join("goal.png"))
+        .expect("the folder is ours");
+    dry_run(folder.path(), "\"direct\"", "\"window\"", &[]).code(2).stdout(is_empty()).stderr(
+        starts_with("error: c.toml:7:8: `reward.goal`: a template of 100x90 px doesn't fit into a frame of 84x84 px")
+            .and(contains("hint: `prf goal crop`")),
+    );
+}
+
+#[test]
+fn a_sequence_in_which_nothing_can_move_is_a_failure() {
+    let folder = folder();
+    fs::create_dir(folder.path().join("one")).expect("the folder is ours");
+    pictures::flat(&folder.path().join("one/1.png"), 0);
+    let goal = |words: &str| {
+        let (direct, motion) = ("direct\"\ngoal = \"goal.png", "motion\"\ngoal = \"one");
+        dry_run(folder.path(), direct, motion, &[])
+            .code(1)
+            .stdout(is_empty())
+            .stderr(starts_with("error: c.toml:7:8: `reward.goal`: one: ").and(contains(words)));
+    };
+    goal("got 1 frame, expected at least 2");
+    pictures::flat(&folder.path().join("one/2.png"), 12);
+    goal("the largest change of a pixel from one frame to the next is 12, the threshold 30");
 }
 
 #[test]

@@ -86,11 +86,9 @@ fn bad_goals_are_written_with_a_warning() {
     let folder = folder();
     screenshot(&folder.path().join("screen.png"));
     GrayImage::new(30, 30).save(folder.path().join("black.png")).expect("a PNG can be written");
-    animation(&folder.path().join("still.gif"), 0);
     for (args, words) in [
         (&["crop", "black.png", "--rect", "1,1,9,9"][..], "all black, which matches nothing"),
         (&["crop", "screen.png", "--rect", "3,3,1,1"], "one even grey (34)"),
-        (&["motion", "still.gif"], "nothing moves in the goal"),
     ] {
         prf(folder.path())
             .arg("goal")
@@ -106,6 +104,7 @@ fn bad_goals_are_written_with_a_warning() {
 fn mistakes_are_named_and_write_nothing() {
     let folder = folder();
     screenshot(&folder.path().join("screen.png"));
+    animation(&folder.path().join("still.gif"), 0);
     for (args, code, words) in [
         (
             &["crop", "screen.png", "--rect", "18,2,5,4"][..],
@@ -118,6 +117,7 @@ fn mistakes_are_named_and_write_nothing() {
         (&["paste", "screen.png", "screen.png", "--at", "1,0"], 2, "--at: 20x10 px at (1, 0) reach over"),
         (&["paste", "screen.png", "screen.png", "--at", "0,0", "--crop", "0,0,21,1"], 2, "--crop: "),
         (&["motion", "screen.png"], 2, "a single picture, in which nothing can move"),
+        (&["motion", "still.gif"], 1, "nothing moves: the largest change of a pixel"),
         (&["motion", "nowhere.gif"], 1, "no such file"),
         (&["motion", "screen.png", "--tau-step", "0"], 2, "--tau-step: got 0"),
         (&["crop", "nowhere.png", "--rect", "0,0,1,1"], 1, "no such file"),

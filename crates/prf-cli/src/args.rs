@@ -10,8 +10,10 @@ use prf_core::{DescriptorKind, DistanceScale, MatchMethod, Norm, Rect};
 use crate::commands::init::Preset;
 use crate::printer::Format;
 
+pub(crate) use self::ck_plus::CkPlusArgs;
 pub(crate) use self::evidence::{EvidenceArgs, InspectArgs, TuneArgs};
 
+mod ck_plus;
 mod evidence;
 
 const EXIT_CODES: &str = "\
@@ -62,6 +64,7 @@ impl Command {
             Self::Score(args) => args.format,
             Self::Inspect(args) => args.evidence.format,
             Self::Tune(args) => args.evidence.format,
+            Self::Goal(GoalArgs { command: GoalCommand::CkPlus(args) }) => args.format,
             Self::Train(_) | Self::Goal(_) | Self::Init(_) | Self::Completions(_) => Format::Text,
         }
     }
@@ -233,10 +236,10 @@ pub(crate) struct MotionOptions {
     /// The time τ of the first movement [default: 0.1]
     #[arg(long, value_name = "TAU", allow_negative_numbers = true)]
     pub(crate) tau_start: Option<f64>,
-    /// How much τ grows with each frame; the paper takes 0.3 for people, 0.4 for robots [default: 0.4]
+    /// How much τ grows with each frame; the paper takes 0.3 for people, 0.4 for robots [default: 0.4; goal ck-plus 0.3]
     #[arg(long, value_name = "TAU", allow_negative_numbers = true)]
     pub(crate) tau_step: Option<f64>,
-    /// Movement is forgotten after (t + 1) / DIVISOR; the paper takes 4 for people, 3 for robots [default: 3]
+    /// Movement is forgotten after (t + 1) / DIVISOR; the paper takes 4 for people, 3 for robots [default: 3; goal ck-plus 4]
     #[arg(long, value_name = "DIVISOR", allow_negative_numbers = true, conflicts_with = "duration")]
     pub(crate) delta_divisor: Option<f64>,
     /// Movement is forgotten after this much of τ
@@ -300,6 +303,8 @@ pub(crate) enum GoalCommand {
     Paste(PasteArgs),
     /// Make the motion template of a folder of pictures, an animation or a video
     Motion(MotionArgs),
+    /// Make the motion template of a face out of the Extended Cohn-Kanade data set (CK+)
+    CkPlus(CkPlusArgs),
 }
 
 #[derive(Debug, Args)]
@@ -335,6 +340,9 @@ pub(crate) struct MotionArgs {
     pub(crate) sequence: PathBuf,
     #[command(flatten)]
     pub(crate) out: GoalOut,
+    /// Leave out frames that cannot be read: exit code 3
+    #[arg(long)]
+    pub(crate) skip_damaged: bool,
     #[command(flatten)]
     pub(crate) motion: MotionOptions,
 }

@@ -67,6 +67,11 @@ impl Printer {
     pub(crate) fn error(&mut self, error: &anyhow::Error) {
         to_stderr(&crate::error::render(error));
     }
+
+    /// The same, of a library's error that is still needed.
+    pub(crate) fn problem(&mut self, error: &prf_core::Error) {
+        to_stderr(&format!("error: {error}\n"));
+    }
 }
 
 /// With stderr closed there is nobody left to tell, so a failure to write is no failure.

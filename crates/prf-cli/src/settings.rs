@@ -7,7 +7,7 @@ use serde::de::DeserializeOwned;
 
 use crate::error::{CliError, Result};
 
-pub(crate) use self::goal::read_goal;
+pub(crate) use self::goal::{ReadGoal, goal_error, goal_misfit, is_picture, read_goal};
 pub(crate) use self::reward::{RewardSettings, motion_params, reward_config, reward_settings};
 #[cfg(feature = "train")]
 pub(crate) use self::run::{LoadedRun, load_run};

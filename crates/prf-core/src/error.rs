@@ -2,6 +2,12 @@
 
 use std::path::PathBuf;
 
+pub use self::sequence::SequenceProblem;
+#[cfg(feature = "io")]
+pub(crate) use self::sequence::{DIVISOR, DURATION};
+
+mod sequence;
+
 /// An error of this crate. Messages are lower case and say what was got and what was expected.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -116,6 +122,16 @@ pub enum Error {
         /// What is wrong with it.
         #[source]
         problem: PictureProblem,
+    },
+
+    /// A sequence of frames shows no movement that could be a goal, or a collection of sequences can't be read.
+    #[error("{}: {problem}", path.display())]
+    Sequence {
+        /// The sequence, or the file in it.
+        path: PathBuf,
+        /// What is wrong with it.
+        #[source]
+        problem: SequenceProblem,
     },
 }
 

@@ -4,18 +4,20 @@
 //! ([`crate::luma`]), what is transparent lies on black, and 16 bits become 8.
 //!
 //! [`read_frame`] reads one picture; of an animation it takes the first frame. [`FrameSource`] reads
-//! whatever has frames: animations, videos, folders of pictures.
+//! whatever has frames: animations, videos, folders of pictures. [`read_motion`] makes the motion template of such a
+//! sequence, and [`ck_plus`] lists the sequences of the Extended Cohn-Kanade data set.
 
 use std::path::Path;
 
 use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder};
 
-use crate::{Error, Frame, FrameView, Goal, PictureProblem};
+use crate::{Error, Frame, FrameView, Goal, PictureProblem, SequenceProblem};
 
 mod animation;
 mod apng;
 mod canvas;
+pub mod ck_plus;
 mod ffmpeg;
 mod folder;
 mod gif;
@@ -24,12 +26,14 @@ mod limits;
 mod natural;
 mod picture;
 mod pixels;
+mod sequence;
 mod sniff;
 mod source;
 mod webp;
 mod y4m;
 
 pub use limits::Limits;
+pub use sequence::{MotionSequence, SequenceWarning, read_motion};
 pub use source::{FrameInfo, FrameSource};
 
 /// Reads a picture (PNG, JPEG, BMP, WebP or GIF) with the default [`Limits`].
@@ -96,4 +100,8 @@ fn encode([width, height]: [usize; 2], pixels: &[u8], colour: ExtendedColorType)
 
 fn picture_error(path: &Path, problem: PictureProblem) -> Error {
     Error::Picture { path: path.to_owned(), problem }
+}
+
+fn sequence_error(path: &Path, problem: SequenceProblem) -> Error {
+    Error::Sequence { path: path.to_owned(), problem }
 }

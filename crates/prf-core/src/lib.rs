@@ -37,6 +37,8 @@
 //! | does a reward order states rightly | [`Footage`], [`Evidence`], [`Judgement`], [`spearman`], [`auc`] |
 //! | pictures in files (feature `io`) | `io::read_frame`, `io::write_frame` |
 //! | animations, videos, folders (feature `io`) | `io::FrameSource` |
+//! | the motion template of a sequence in files (feature `io`) | `io::read_motion` |
+//! | the sequences of a CK+ folder (feature `io`) | `io::ck_plus` |
 //!
 //! `docs/reward.md` in the repository has every formula with a worked example.
 
@@ -68,7 +70,7 @@ pub use descriptor::{
     WindowDescriptor, WindowParams,
 };
 pub use ema::EmaState;
-pub use error::{Error, PictureProblem};
+pub use error::{Error, PictureProblem, SequenceProblem};
 pub use evidence::{
     Alteration, Altered, Evidence, Figure, FigureKind, Footage, Judgement, Label, Rewards, Verdict, recommend,
     settings, windows_around,

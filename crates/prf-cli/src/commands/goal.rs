@@ -3,14 +3,16 @@
 use std::path::Path;
 
 use prf_core::io;
-use prf_core::{DescriptorKind, DescriptorParams, Frame, Goal, Rect, RewardParams, check_goal};
+use prf_core::{DescriptorKind, Frame, Goal, Rect, RewardParams, check_goal};
 
 use crate::ExitStatus;
-use crate::args::{GoalArgs, GoalCommand, GoalOut, MotionArgs, PasteArgs};
+use crate::args::{GoalArgs, GoalCommand, GoalOut, PasteArgs};
 use crate::error::{CliError, Result};
 use crate::files::{refuse_existing, write_whole};
 use crate::printer::Printer;
-use crate::settings::{motion_params, read_goal};
+
+mod ck_plus;
+mod sequence;
 
 pub(crate) fn run(args: &GoalArgs, printer: &mut Printer) -> Result<ExitStatus> {
     match &args.command {
@@ -19,7 +21,8 @@ pub(crate) fn run(args: &GoalArgs, printer: &mut Printer) -> Result<ExitStatus> 
             finish(crop(&picture, args.rect, "--rect", &args.picture)?, DescriptorKind::Window, &args.out, printer)
         }
         GoalCommand::Paste(args) => paste(args, printer),
-        GoalCommand::Motion(args) => motion(args, printer),
+        GoalCommand::Motion(args) => sequence::run(args, printer),
+        GoalCommand::CkPlus(args) => ck_plus::run(args, printer),
     }
 }
 
@@ -39,16 +42,6 @@ fn paste(args: &PasteArgs, printer: &mut Printer) -> Result<ExitStatus> {
     }
     let Some(rect) = args.crop else { return finish(picture, DescriptorKind::Direct, &args.out, printer) };
     finish(crop(&picture, rect, "--crop", &args.picture)?, DescriptorKind::Window, &args.out, printer)
-}
-
-fn motion(args: &MotionArgs, printer: &mut Printer) -> Result<ExitStatus> {
-    let params = motion_params(&args.motion)?;
-    if args.sequence.is_file() && io::FrameSource::open(&args.sequence)?.len_hint() == Some(1) {
-        let message = format!("{} is a single picture, in which nothing can move", args.sequence.display());
-        return Err(CliError::misuse(message).hint("give a folder of pictures, an animation or a video").into());
-    }
-    let goal = read_goal(&args.sequence, None, &DescriptorParams::Motion(params))?;
-    finish(goal.picture, DescriptorKind::Motion, &args.out, printer)
 }
 
 fn crop(picture: &Frame, rect: Rect, option: &str, path: &Path) -> Result<Frame> {
@@ -73,18 +66,26 @@ fn inside(picture: &Frame, rect: Rect, option: &str, path: &Path) -> Result<()> 
     .into())
 }
 
-/// Writes the goal and says what is suspicious about it.
+/// Writes the goal, names it on stdout, and says what is suspicious about it.
 fn finish(picture: Frame, kind: DescriptorKind, out: &GoalOut, printer: &mut Printer) -> Result<ExitStatus> {
+    write(&picture, out)?;
+    printer.line(out.out.display())?;
+    warn(picture, kind, printer);
+    Ok(ExitStatus::Done)
+}
+
+fn write(picture: &Frame, out: &GoalOut) -> Result<()> {
     if !out.force {
         refuse_existing(&out.out)?;
     }
-    write_whole(&out.out, &io::png(picture.view()), out.force)?;
-    printer.line(out.out.display())?;
+    write_whole(&out.out, &io::png(picture.view()), out.force)
+}
+
+fn warn(picture: Frame, kind: DescriptorKind, printer: &mut Printer) {
     let mut params = RewardParams::default();
     params.hog.cell = kind.paper_cell();
     match check_goal(&Goal::from(picture), kind, params) {
         Ok(warnings) => warnings.iter().for_each(|warning| printer.warning(warning, Some(warning.hint()))),
         Err(error) => printer.warning(error, Some("cut out a larger part")),
     }
-    Ok(ExitStatus::Done)
 }

@@ -15,9 +15,9 @@ use crate::printer::{Format, Printer};
 mod diagram;
 
 pub(crate) fn run(args: &InspectArgs, printer: &mut Printer) -> Result<ExitStatus> {
-    let subject = Subject::read(&args.evidence, &args.reward)?;
+    let subject = Subject::read(&args.evidence, &args.reward, printer)?;
     let known = Known::gather(&args.evidence, &subject, printer)?;
-    let evidence = known.evidence(&subject.descriptor(), &subject.goal)?;
+    let evidence = known.evidence(&subject, &subject.goal)?;
     let params = subject.params();
     let misfit = |error: prf_core::Error| CliError::misuse(format!("{}: {error}", subject.goal_path.display()));
     let judgement = evidence.judge(params).map_err(misfit)?;

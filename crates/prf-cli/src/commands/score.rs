@@ -13,13 +13,17 @@ use crate::error::{CliError, Result};
 use crate::files::write_whole;
 use crate::plot::write_svg;
 use crate::printer::{Format, Printer};
-use crate::settings::{RewardSettings, read_goal, reward_settings};
+use crate::settings::{ReadGoal, RewardSettings, goal_error, read_goal, reward_settings};
 
 mod curves;
 
 pub(crate) fn run(args: &ScoreArgs, printer: &mut Printer) -> Result<ExitStatus> {
     let settings = reward_settings(&args.reward)?;
-    let goal = read_goal(&args.goal, settings.mask.as_deref(), &settings.descriptor)?;
+    let ReadGoal { goal, warning } =
+        read_goal(&args.goal, settings.mask.as_deref(), &settings.descriptor).map_err(goal_error)?;
+    if let Some(warning) = warning {
+        printer.warning(format_args!("{}: {warning}", args.goal.display()), Some(warning.hint()));
+    }
     warn_of_goal(&args.goal, &goal, &settings, printer);
     let descriptor = settings
         .descriptor

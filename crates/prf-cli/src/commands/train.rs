@@ -19,6 +19,9 @@ use crate::settings::{LoadedRun, load_run};
 
 pub(crate) fn run(args: &TrainArgs, printer: &mut Printer) -> Result<ExitStatus> {
     let loaded = load_run(&args.config, &args.set, args.seed)?;
+    if let Some(warning) = &loaded.warning {
+        printer.warning(format_args!("the goal's sequence: {warning}"), Some(warning.hint()));
+    }
     let device = learning::open_device(args.device)?;
     let threads = set_threads(&loaded.config);
     if args.dry_run {

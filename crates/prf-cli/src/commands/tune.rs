@@ -31,7 +31,7 @@ struct Judged {
 }
 
 pub(crate) fn run(args: &TuneArgs, printer: &mut Printer) -> Result<ExitStatus> {
-    let subject = Subject::read(&args.evidence, &args.reward)?;
+    let subject = Subject::read(&args.evidence, &args.reward, printer)?;
     check_out(args)?;
     let candidates = candidates(&subject, args.screen.as_deref())?;
     let known = Known::gather(&args.evidence, &subject, printer)?;
@@ -89,7 +89,7 @@ fn judge(subject: &Subject, known: &Known, candidates: Vec<Candidate>) -> Result
     let mut judged = Vec::new();
     for (index, candidate) in candidates.into_iter().enumerate() {
         bar.set_position(index as u64);
-        let evidence = match known.evidence(&subject.descriptor(), &candidate.goal) {
+        let evidence = match known.evidence(subject, &candidate.goal) {
             Ok(evidence) => evidence,
             Err(error) if index == 0 => return Err(error),
             Err(_) => continue,
@@ -114,7 +114,7 @@ fn draw(args: &TuneArgs, recommendation: &Recommendation<'_>, printer: &mut Prin
     let Recommendation { subject, known, window, best, .. } = recommendation;
     let headline = recommendation.headline();
     if let Some(path) = &args.evidence.picture {
-        let evidence = known.evidence(&subject.descriptor(), &window.candidate.goal)?;
+        let evidence = known.evidence(subject, &window.candidate.goal)?;
         let distances = evidence.distances(best.params)?;
         draw_best_and_worst(path, &headline, known, &evidence, &distances, printer)?;
     }

@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, HashSet};
 use std::path::Path;
 
 use prf_core::io::{FrameInfo, FrameSource, Limits};
-use prf_core::{DescriptorParams, Evidence, Footage, Frame, Goal, Label};
+use prf_core::{DescriptorParams, Error as CoreError, Evidence, Footage, Frame, Goal, Label};
 use prf_envs::EnvConfig;
 use prf_envs::survey::survey;
 
@@ -85,18 +85,22 @@ impl Known {
         }
     }
 
-    /// The evidence on one goal.
+    /// The evidence on one goal of the subject.
     ///
     /// # Errors
     ///
     /// Misuse when the goal doesn't fit the frames, or when too little is known.
-    pub(crate) fn evidence(&self, descriptor: &DescriptorParams, goal: &Goal) -> Result<Evidence<'_>> {
+    pub(crate) fn evidence(&self, subject: &Subject, goal: &Goal) -> Result<Evidence<'_>> {
+        let descriptor = &subject.descriptor();
         let evidence = match self.kind {
             Kind::Goal => Evidence::of_goal(descriptor, goal),
             Kind::World(_) | Kind::Scores => self.footage.scored(descriptor, goal),
             Kind::Demonstrations(_) => self.footage.demonstrated(descriptor, goal),
         };
-        evidence.map_err(|error| CliError::misuse(error.to_string()).into())
+        evidence.map_err(|error| match error {
+            CoreError::TemplateTooLarge { .. } => CliError::misuse(format!("{}: {error}", subject.place)).into(),
+            error => CliError::misuse(error.to_string()).into(),
+        })
     }
 
     /// What the `kept`-th of the frames that were kept is called.
@@ -197,12 +201,12 @@ impl Known {
         label: Option<Label>,
         window: Option<&Frame>,
         name: String,
-    ) -> std::result::Result<(), prf_core::Error> {
+    ) -> std::result::Result<(), CoreError> {
         let shape = |frame: &Frame| [frame.height(), frame.width()];
         if let Some(goal) = window
             && (0..2).any(|side| shape(goal)[side] > shape(frame)[side])
         {
-            return Err(prf_core::Error::TemplateTooLarge { template: shape(goal), frame: shape(frame) });
+            return Err(CoreError::TemplateTooLarge { template: shape(goal), frame: shape(frame) });
         }
         let Some(label) = label else { return self.footage.pass(frame.view()) };
         self.footage.observe(frame.view(), label)?;

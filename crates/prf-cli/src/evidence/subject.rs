@@ -8,7 +8,8 @@ use serde::Deserialize;
 
 use crate::args::{EvidenceArgs, RewardArgs};
 use crate::error::{CliError, Result};
-use crate::settings::{load, read_goal, reward_config};
+use crate::printer::Printer;
+use crate::settings::{ReadGoal, goal_error, goal_misfit, load, read_goal, reward_config};
 
 /// A reward, its goal, and the world it is for, if a config names one.
 #[derive(Debug)]
@@ -19,6 +20,8 @@ pub(crate) struct Subject {
     pub(crate) goal_path: PathBuf,
     pub(crate) mask_path: Option<PathBuf>,
     pub(crate) goal: Goal,
+    /// What the goal was named by, to begin an error about it with: a place in a config, or its path.
+    pub(crate) place: String,
     pub(crate) env: Option<EnvConfig>,
 }
 
@@ -29,16 +32,23 @@ struct Tables {
     reward: RewardConfig,
 }
 
+/// The goal's and its mask's.
+type Files = (PathBuf, Option<PathBuf>);
+
+fn goal_of(reward: &RewardConfig, (goal, mask): &Files) -> std::result::Result<ReadGoal, prf_core::Error> {
+    read_goal(goal, mask.as_deref(), &reward.descriptor_params().unwrap_or_default())
+}
+
 impl Subject {
     /// # Errors
     ///
     /// Misuse if the config or an option is wrong, or the config's reward is not perceptual; failure if the goal can't be read.
-    pub(crate) fn read(args: &EvidenceArgs, reward: &RewardArgs) -> Result<Subject> {
+    pub(crate) fn read(args: &EvidenceArgs, reward: &RewardArgs, printer: &mut Printer) -> Result<Subject> {
         let is_config = args.subject.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"));
-        if is_config { Subject::of_config(args, reward) } else { Subject::of_goal(args, reward) }
+        if is_config { Subject::of_config(args, reward, printer) } else { Subject::of_goal(args, reward, printer) }
     }
 
-    fn of_config(args: &EvidenceArgs, reward: &RewardArgs) -> Result<Subject> {
+    fn of_config(args: &EvidenceArgs, reward: &RewardArgs, printer: &mut Printer) -> Result<Subject> {
         let path = &args.subject;
         if reward.config.is_some() {
             let message = format!("--config: {} is a config already", path.display());
@@ -62,23 +72,33 @@ impl Subject {
                 None => tables.reward.window.and_then(|named| named.mask),
             };
         }
-        Subject::new(config, (goal_path, mask_path), tables.env)
+        let files = (goal_path, mask_path);
+        let read = goal_of(&config, &files).map_err(|error| goal_misfit(&error, files.1.as_deref(), &source))?;
+        let place = format!("{}: `reward.goal`", source.locate("reward.goal"));
+        Ok(Subject { place, ..Subject::new(config, files, read, tables.env, printer) })
     }
 
-    fn of_goal(args: &EvidenceArgs, reward: &RewardArgs) -> Result<Subject> {
+    fn of_goal(args: &EvidenceArgs, reward: &RewardArgs, printer: &mut Printer) -> Result<Subject> {
         let mut config = reward_config(reward)?;
         config.goal = Some(args.subject.clone());
         let mask_path = config.window.as_ref().and_then(|window| window.mask.clone());
-        Subject::new(config, (args.subject.clone(), mask_path), None)
+        let files = (args.subject.clone(), mask_path);
+        let read = goal_of(&config, &files).map_err(goal_error)?;
+        Ok(Subject::new(config, files, read, None, printer))
     }
 
     fn new(
         reward: RewardConfig,
-        (goal_path, mask_path): (PathBuf, Option<PathBuf>),
+        (goal_path, mask_path): Files,
+        ReadGoal { goal, warning }: ReadGoal,
         env: Option<EnvConfig>,
-    ) -> Result<Subject> {
-        let goal = read_goal(&goal_path, mask_path.as_deref(), &reward.descriptor_params().unwrap_or_default())?;
-        Ok(Subject { reward, goal_path, mask_path, goal, env })
+        printer: &mut Printer,
+    ) -> Subject {
+        let place = goal_path.display().to_string();
+        if let Some(warning) = warning {
+            printer.warning(format_args!("{place}: {warning}"), Some(warning.hint()));
+        }
+        Subject { reward, goal_path, mask_path, goal, place, env }
     }
 
     pub(crate) fn descriptor(&self) -> DescriptorParams {

@@ -124,13 +124,13 @@ fn change_motion(args: &MotionOptions, motion: &mut MotionParams) {
     }
 }
 
-/// The motion template's parameters, from options alone.
+/// The motion template's parameters: `usual` ones, changed by options.
 ///
 /// # Errors
 ///
 /// Misuse, pointing at the option that is out of range.
-pub(crate) fn motion_params(args: &MotionOptions) -> Result<MotionParams> {
-    let mut motion = MotionParams::default();
+pub(crate) fn motion_params(usual: MotionParams, args: &MotionOptions) -> Result<MotionParams> {
+    let mut motion = usual;
     change_motion(args, &mut motion);
     match motion.validate() {
         Ok(()) => Ok(motion),

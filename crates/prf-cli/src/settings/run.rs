@@ -3,10 +3,12 @@
 use std::path::Path;
 
 use prf_core::Goal;
+use prf_core::io::SequenceWarning;
 use prf_dqn::config::RunConfig;
 use prf_envs::RewardConfig;
 
-use super::{Source, load, misfit, read_goal};
+use super::goal::{GOAL, MASK};
+use super::{ReadGoal, Source, goal_misfit, load, misfit, read_goal};
 use crate::error::{CliError, Result};
 
 /// Builds the task once, so that what does not fit together is known before anything is written.
@@ -21,6 +23,8 @@ fn check_task(config: &RunConfig, goal: Option<&Goal>, source: &Source) -> Resul
     match error {
         prf_dqn::Error::Config(error) | prf_dqn::Error::Task(prf_envs::Error::Core(error)) => match error {
             prf_core::Error::InvalidParam { .. } => Err(misfit(source, error)),
+            // A window that is larger than the world's screen.
+            prf_core::Error::TemplateTooLarge { .. } => Err(goal_misfit(&error, None, source).into()),
             error => Err(CliError::misuse(format!("{}: `{HOG}`: {error}", source.locate(HOG))).into()),
         },
         other => Err(other.into()),
@@ -28,8 +32,6 @@ fn check_task(config: &RunConfig, goal: Option<&Goal>, source: &Source) -> Resul
 }
 
 const HOG: &str = "reward.hog";
-const GOAL: &str = "reward.goal";
-const MASK: &str = "reward.window.mask";
 
 /// A config that has been checked, and the goal it names.
 #[derive(Debug)]
@@ -38,6 +40,8 @@ pub(crate) struct LoadedRun {
     pub(crate) config: RunConfig,
     /// The goal, if the config names one.
     pub(crate) goal: Option<Goal>,
+    /// What is suspicious about the sequence that the goal was made of.
+    pub(crate) warning: Option<SequenceWarning>,
 }
 
 /// Reads the config at `path`, changed by `sets` and then by `seed`, and the goal it names.
@@ -51,9 +55,9 @@ pub(crate) fn load_run(path: &Path, sets: &[String], seed: Option<u64>) -> Resul
     config.seed = seed.unwrap_or(config.seed);
     config.validate().map_err(|error| misfit(&source, error))?;
     resolve(&mut config.reward, &source)?;
-    let goal = load_goal(&config.reward, &source)?;
+    let (goal, warning) = load_goal(&config.reward, &source)?;
     check_task(&config, goal.as_ref(), &source)?;
-    Ok(LoadedRun { config, goal })
+    Ok(LoadedRun { config, goal, warning })
 }
 
 /// Makes the paths of the reward relative to the current folder.
@@ -72,14 +76,10 @@ fn resolve(reward: &mut RewardConfig, source: &Source) -> Result<()> {
     Ok(())
 }
 
-fn load_goal(reward: &RewardConfig, source: &Source) -> Result<Option<Goal>> {
-    let (Some(path), Some(descriptor)) = (&reward.goal, reward.descriptor_params()) else { return Ok(None) };
+fn load_goal(reward: &RewardConfig, source: &Source) -> Result<(Option<Goal>, Option<SequenceWarning>)> {
+    let (Some(path), Some(descriptor)) = (&reward.goal, reward.descriptor_params()) else { return Ok((None, None)) };
     let mask = reward.window.as_ref().and_then(|window| window.mask.as_deref());
-    let goal = read_goal(path, mask, &descriptor).map_err(|error| {
-        let key =
-            if matches!(&error, prf_core::Error::Picture { path, .. } if Some(&**path) == mask) { MASK } else { GOAL };
-        CliError::failed(format!("{}: `{key}`: {error}", source.locate(key)))
-            .hint("name a picture of the finished task, such as a PNG")
-    })?;
-    Ok(Some(goal))
+    let ReadGoal { goal, warning } =
+        read_goal(path, mask, &descriptor).map_err(|error| goal_misfit(&error, mask, source))?;
+    Ok((Some(goal), warning))
 }

@@ -132,6 +132,12 @@ impl FrameSource {
         Some(read.map_err(error).map(|Timed { time_s }| FrameInfo { index, time_s, path }))
     }
 
+    /// What was opened.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
     /// How many frames are still to come, damaged pictures of a folder included. `None` of animations
     /// and videos: only reading them tells.
     #[must_use]
