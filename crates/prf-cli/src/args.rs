@@ -11,8 +11,10 @@ use crate::commands::init::Preset;
 use crate::printer::Format;
 
 pub(crate) use self::evidence::{EvidenceArgs, InspectArgs, TuneArgs};
+pub(crate) use self::play::{PlayArgs, PlayerArg, RecordingArgs, WorldsArgs};
 
 mod evidence;
+mod play;
 
 const EXIT_CODES: &str = "\
 Exit codes: 0 done, 1 failed, 2 wrong arguments or config, 3 finished but some input was lost, \
@@ -50,6 +52,11 @@ pub(crate) enum Command {
     Tune(TuneArgs),
     /// Write a config file to start from, with its goal picture
     Init(InitArgs),
+    /// List the worlds: their actions, sizes, limits, and what the best and a random player score
+    Worlds(WorldsArgs),
+    /// Play a world in the terminal, or watch a player; record a GIF, frames, or the goal of a movement
+    #[command(after_help = play::HELP)]
+    Play(PlayArgs),
     /// Print a completion script for a shell
     Completions(CompletionsArgs),
 }
@@ -62,6 +69,8 @@ impl Command {
             Self::Score(args) => args.format,
             Self::Inspect(args) => args.evidence.format,
             Self::Tune(args) => args.evidence.format,
+            Self::Worlds(args) => args.format,
+            Self::Play(args) => args.format,
             Self::Train(_) | Self::Goal(_) | Self::Init(_) | Self::Completions(_) => Format::Text,
         }
     }

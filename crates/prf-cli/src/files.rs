@@ -16,7 +16,7 @@ pub(crate) fn refuse_existing(path: &Path) -> Result<()> {
 
 fn exists(path: &Path) -> CliError {
     CliError::failed(format!("{} exists already and is left as it is", path.display()))
-        .hint("write elsewhere with --out, or over it with --force")
+        .hint("write to another place, or over it with --force")
 }
 
 /// Writes a file whole or not at all.

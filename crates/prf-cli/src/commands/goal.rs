@@ -80,11 +80,16 @@ fn finish(picture: Frame, kind: DescriptorKind, out: &GoalOut, printer: &mut Pri
     }
     write_whole(&out.out, &io::png(picture.view()), out.force)?;
     printer.line(out.out.display())?;
+    warn_of(picture, kind, printer);
+    Ok(ExitStatus::Done)
+}
+
+/// Says what is suspicious about a goal.
+pub(super) fn warn_of(picture: Frame, kind: DescriptorKind, printer: &mut Printer) {
     let mut params = RewardParams::default();
     params.hog.cell = kind.paper_cell();
     match check_goal(&Goal::from(picture), kind, params) {
         Ok(warnings) => warnings.iter().for_each(|warning| printer.warning(warning, Some(warning.hint()))),
         Err(error) => printer.warning(error, Some("cut out a larger part")),
     }
-    Ok(ExitStatus::Done)
 }
