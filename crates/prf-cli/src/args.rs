@@ -18,7 +18,7 @@ mod play;
 
 const EXIT_CODES: &str = "\
 Exit codes: 0 done, 1 failed, 2 wrong arguments or config, 3 finished but some input was lost, \
-130 interrupted with the run saved.";
+130 interrupted with what was done saved.";
 
 const SCORE_EXIT_CODES: &str = "\
 Pictures that cannot be read are named on stderr and left out: exit code 3 if others could be scored, \

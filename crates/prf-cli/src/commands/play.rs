@@ -102,12 +102,19 @@ fn write(args: &PlayArgs, recording: Option<Recording>, printer: &mut Printer) -
         printer.note("no step was taken, so nothing was recorded");
         return Ok(());
     };
-    let written = outputs::write(&recording, &args.recordings)?;
-    written.iter().for_each(|words| printer.note(words));
+    // What fails in one place must not keep the others from being written.
+    let mut failure = Ok(());
+    for written in outputs::write(&recording, &args.recordings) {
+        match written {
+            Ok(words) => printer.note(words),
+            Err(error) if failure.is_ok() => failure = Err(error),
+            Err(error) => printer.error(&error),
+        }
+    }
     if let Some(motion) = recording.motion {
         warn_of(motion, DescriptorKind::Motion, printer);
     }
-    Ok(())
+    failure
 }
 
 fn report(args: &PlayArgs, episode: Episode, printer: &mut Printer) -> Result<()> {

@@ -2,10 +2,11 @@
 
 use std::time::{Duration, Instant};
 
-use crossterm::event::{self, Event, KeyEvent, KeyEventKind};
+use crossterm::event::{Event, KeyEvent, KeyEventKind};
 use prf_envs::Controls;
 use prf_envs::players::Player;
 
+use super::events::Events;
 use super::hand::Hand;
 use super::keys::{Keys, Request};
 use super::panel::Panel;
@@ -40,23 +41,22 @@ pub(crate) fn play(
 ) -> Result<Ending> {
     let mut screen = Screen::open(player.is_none())?;
     let mut game = Game::new(session, player, controls, steps_per_second, screen.reports_releases());
-    loop {
+    let events = Events::listen()?;
+    while !interrupt.came() {
         screen.draw(game.session.world(), &game.panel())?;
-        let mut patience = game.until_due(Instant::now()).min(PATIENCE);
-        while event::poll(patience)? {
-            // The first event is waited for, the others only if they are there already.
-            patience = Duration::ZERO;
-            if let Event::Key(key) = event::read()?
+        let mut patience = game.until_due(Instant::now());
+        while let Some(event) = events.next(patience)? {
+            if let Event::Key(key) = event
                 && let Some(ending) = game.key(key, Instant::now())?
             {
                 return Ok(ending);
             }
-        }
-        if interrupt.came() {
-            return Ok(Ending::Interrupted);
+            // Further events are taken along only if they are there already.
+            patience = Duration::ZERO;
         }
         game.advance(Instant::now())?;
     }
+    Ok(Ending::Interrupted)
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -114,9 +114,10 @@ impl<'a> Game<'a> {
         self.due = Instant::now() + self.step_time;
     }
 
-    /// How long nothing happens unless a key is pressed.
+    /// How long to wait for a key.
     fn until_due(&self, now: Instant) -> Duration {
-        if self.ticks && self.phase == Phase::Running { self.due.saturating_duration_since(now) } else { PATIENCE }
+        let is_due = self.ticks && self.phase == Phase::Running;
+        if is_due { self.due.saturating_duration_since(now).min(PATIENCE) } else { PATIENCE }
     }
 
     /// Does what a key asks for; says how it ends if it does.

@@ -5,6 +5,7 @@
 //! and [`live`] is the loop that joins them.
 
 mod blocks;
+mod events;
 mod hand;
 mod keys;
 mod layout;

@@ -35,32 +35,20 @@ pub(crate) fn refuse_occupied(args: &RecordingArgs) -> Result<()> {
     Ok(())
 }
 
-/// Writes everything that was recorded, as much of it as can be, and returns what was written.
-///
-/// # Errors
-///
-/// The first failure, after everything else has been written.
-pub(crate) fn write(recording: &Recording, args: &RecordingArgs) -> Result<Vec<String>> {
-    let mut written = Vec::new();
-    let mut failure = None;
-    let mut note = |result: Result<()>, words: String| match result {
-        Ok(()) => written.push(words),
-        Err(error) if failure.is_none() => failure = Some(error),
-        Err(_) => {}
-    };
+/// Writes everything that was recorded: for each file or folder what was written, or why it could not be.
+pub(crate) fn write(recording: &Recording, args: &RecordingArgs) -> Vec<Result<String>> {
     let frames = recording.frames;
-    if let (Some(path), Some(gif)) = (&args.gif, &recording.gif) {
-        note(write_whole(path, gif, args.force), format!("drew {frames} frames into {}", path.display()));
-    }
-    if let Some(folder) = &args.frames {
-        let words = format!("wrote {frames} frames into {}", folder.display());
-        note(write_frames(folder, &recording.pngs), words);
-    }
-    if let (Some(path), Some(motion)) = (&args.motion_goal, &recording.motion) {
-        let words = format!("wrote the motion template of {frames} frames into {}", path.display());
-        note(write_whole(path, &png(motion.view()), args.force), words);
-    }
-    failure.map_or(Ok(written), Err)
+    let gif = args.gif.as_ref().zip(recording.gif.as_ref()).map(|(path, gif)| {
+        write_whole(path, gif, args.force).map(|()| format!("drew {frames} frames into {}", path.display()))
+    });
+    let pngs = args.frames.as_ref().map(|folder| {
+        write_frames(folder, &recording.pngs).map(|()| format!("wrote {frames} frames into {}", folder.display()))
+    });
+    let motion = args.motion_goal.as_ref().zip(recording.motion.as_ref()).map(|(path, motion)| {
+        write_whole(path, &png(motion.view()), args.force)
+            .map(|()| format!("wrote the motion template of {frames} frames into {}", path.display()))
+    });
+    [gif, pngs, motion].into_iter().flatten().collect()
 }
 
 /// Replaces the frames in `folder` by these; other files stay.
