@@ -61,9 +61,9 @@ impl Screen {
         Ok(screen)
     }
 
-    /// Whether the terminal reports keys that go up.
+    /// Whether the terminal reports keys that go up; Windows always does.
     pub(super) fn reports_releases(&self) -> bool {
-        REPORTS_RELEASES.load(Ordering::SeqCst)
+        cfg!(windows) || REPORTS_RELEASES.load(Ordering::SeqCst)
     }
 
     /// Draws the world as large as there is room for, and the words.
