@@ -21,7 +21,7 @@ pub(super) enum Request {
 /// Keys that are not an action's, and what they do.
 pub(super) const OTHER_KEYS: [(&str, &str); 4] = [("p", "pause"), ("r", "again"), ("n", "next episode"), ("q", "quit")];
 
-/// The keys of the actions by their index: 36 at most, less those of [`OTHER_KEYS`]. No world has so many.
+/// The keys of the actions by their index, without those of [`OTHER_KEYS`]: more than any world has actions.
 const BY_INDEX: &str = "123456789abcdefghijklmostuvwxyz";
 
 /// The keys of a world's actions.
