@@ -12,13 +12,15 @@ use crate::printer::Format;
 
 pub(crate) use self::ck_plus::CkPlusArgs;
 pub(crate) use self::evidence::{EvidenceArgs, InspectArgs, TuneArgs};
+pub(crate) use self::play::{PlayArgs, PlayerArg, RecordingArgs, WorldsArgs};
 
 mod ck_plus;
 mod evidence;
+mod play;
 
 const EXIT_CODES: &str = "\
 Exit codes: 0 done, 1 failed, 2 wrong arguments or config, 3 finished but some input was lost, \
-130 interrupted with the run saved.";
+130 interrupted with what was done saved.";
 
 const SCORE_EXIT_CODES: &str = "\
 Pictures that cannot be read are named on stderr and left out: exit code 3 if others could be scored, \
@@ -52,6 +54,11 @@ pub(crate) enum Command {
     Tune(TuneArgs),
     /// Write a config file to start from, with its goal picture
     Init(InitArgs),
+    /// List the worlds: their actions, sizes, limits, and what the best and a random player score
+    Worlds(WorldsArgs),
+    /// Play a world in the terminal, or watch a player; record a GIF, frames, or the goal of a movement
+    #[command(after_help = play::HELP)]
+    Play(PlayArgs),
     /// Print a completion script for a shell
     Completions(CompletionsArgs),
 }
@@ -65,6 +72,8 @@ impl Command {
             Self::Inspect(args) => args.evidence.format,
             Self::Tune(args) => args.evidence.format,
             Self::Goal(GoalArgs { command: GoalCommand::CkPlus(args) }) => args.format,
+            Self::Worlds(args) => args.format,
+            Self::Play(args) => args.format,
             Self::Train(_) | Self::Goal(_) | Self::Init(_) | Self::Completions(_) => Format::Text,
         }
     }
@@ -245,6 +254,9 @@ pub(crate) struct MotionOptions {
     /// Movement is forgotten after this much of τ
     #[arg(long, value_name = "TAU", allow_negative_numbers = true)]
     pub(crate) duration: Option<f64>,
+    /// Pass over frames in which nothing has moved, so that pauses don't count
+    #[arg(long, value_name = "BOOL", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
+    pub(crate) skip_still: Option<bool>,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]

@@ -16,33 +16,35 @@ pub(crate) fn refuse_existing(path: &Path) -> Result<()> {
 
 fn exists(path: &Path) -> CliError {
     CliError::failed(format!("{} exists already and is left as it is", path.display()))
-        .hint("write elsewhere with --out, or over it with --force")
+        .hint("write to another place, or over it with --force")
 }
 
 /// Writes a file whole or not at all.
 pub(crate) fn write_whole(path: &Path, content: &[u8], force: bool) -> Result<()> {
+    let failed = |error: io::Error| {
+        CliError::failed(format!("cannot write {}: {error}", path.display()))
+            .hint("check that the folder can be written to and has room")
+    };
+    let file = filled_temporary(path, content).map_err(failed)?;
+    let persisted = if force { file.persist(path) } else { file.persist_noclobber(path) };
+    match persisted {
+        Ok(_) => Ok(()),
+        Err(error) if !force && error.error.kind() == io::ErrorKind::AlreadyExists => Err(exists(path).into()),
+        Err(error) => Err(failed(error.error).into()),
+    }
+}
+
+/// The content in a file beside `path`, whose folder is made if there is none.
+fn filled_temporary(path: &Path, content: &[u8]) -> io::Result<tempfile::NamedTempFile> {
     let folder = match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
     };
-    let write = || -> io::Result<()> {
-        fs::create_dir_all(folder)?;
-        let mut file = new_temporary(folder)?;
-        file.write_all(content)?;
-        file.as_file().sync_all()?;
-        if force {
-            file.persist(path)?;
-        } else {
-            file.persist_noclobber(path)?;
-        }
-        Ok(())
-    };
-    write().map_err(|error| match error.kind() {
-        io::ErrorKind::AlreadyExists if !force => exists(path).into(),
-        _ => CliError::failed(format!("cannot write {}: {error}", path.display()))
-            .hint("check that the folder can be written to and has room")
-            .into(),
-    })
+    fs::create_dir_all(folder)?;
+    let mut file = new_temporary(folder)?;
+    file.write_all(content)?;
+    file.as_file().sync_all()?;
+    Ok(file)
 }
 
 fn new_temporary(folder: &Path) -> io::Result<tempfile::NamedTempFile> {

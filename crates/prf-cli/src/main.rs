@@ -13,6 +13,9 @@ mod commands;
 mod error;
 mod evidence;
 mod files;
+mod gif;
+mod interrupt;
+mod play;
 mod plot;
 mod printer;
 #[cfg(feature = "train")]
@@ -26,8 +29,7 @@ enum ExitStatus {
     Done,
     /// It was done, but without some damaged input.
     FinishedWithLoss,
-    /// It was stopped by the user, and the run is saved.
-    #[cfg(feature = "train")]
+    /// It was stopped by the user, and what was done so far is saved.
     Interrupted,
 }
 
@@ -36,7 +38,6 @@ impl From<ExitStatus> for ExitCode {
         Self::from(match status {
             ExitStatus::Done => 0,
             ExitStatus::FinishedWithLoss => 3,
-            #[cfg(feature = "train")]
             ExitStatus::Interrupted => 130,
         })
     }

@@ -16,6 +16,7 @@
 pub mod breakout;
 mod bytes;
 pub mod check;
+mod controls;
 mod coverage;
 mod env;
 mod error;
@@ -28,6 +29,7 @@ pub mod rng;
 pub mod survey;
 mod task;
 
+pub use controls::{Controls, Pace};
 pub use env::{Environment, Spec, Status, Step};
 pub use error::Error;
 pub use task::{

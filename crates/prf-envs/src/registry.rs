@@ -3,10 +3,13 @@
 use crate::breakout::{self, Breakout};
 use crate::flappy::{self, Flappy};
 use crate::kobian::{self, Expression, Kobian};
-use crate::{EnvConfig, Environment, Error};
+use crate::{Controls, EnvConfig, Environment, Error, Pace};
 
 struct Entry {
     name: &'static str,
+    summary: &'static str,
+    page: &'static str,
+    controls: Controls,
     limit_steps: u32,
     make: fn(u32) -> Result<Box<dyn Environment>, Error>,
 }
@@ -14,21 +17,33 @@ struct Entry {
 const WORLDS: [Entry; 4] = [
     Entry {
         name: breakout::NAME,
+        summary: "a paddle keeps a ball in play that breaks bricks out of a wall",
+        page: "docs/worlds/breakout.md",
+        controls: Controls { pace: Pace::Held, idle_action: breakout::STAY },
         limit_steps: breakout::LIMIT_STEPS,
         make: |limit_steps| Ok(Box::new(Breakout::new(limit_steps)?)),
     },
     Entry {
         name: flappy::NAME,
+        summary: "a bird falls, flaps and has to fly through the gaps between pipes",
+        page: "docs/worlds/flappy.md",
+        controls: Controls { pace: Pace::Impulses, idle_action: flappy::GLIDE },
         limit_steps: flappy::LIMIT_STEPS,
         make: |limit_steps| Ok(Box::new(Flappy::new(limit_steps)?)),
     },
     Entry {
         name: Expression::Happy.name(),
+        summary: "a robot's face is to smile; its brows and its mouth move",
+        page: "docs/worlds/kobian.md",
+        controls: Controls { pace: Pace::TurnBased, idle_action: kobian::REST },
         limit_steps: kobian::LIMIT_STEPS,
         make: |limit_steps| Ok(Box::new(Kobian::new(Expression::Happy, limit_steps)?)),
     },
     Entry {
         name: Expression::Surprise.name(),
+        summary: "a robot's face is to look surprised; its brows and its mouth move",
+        page: "docs/worlds/kobian.md",
+        controls: Controls { pace: Pace::TurnBased, idle_action: kobian::REST },
         limit_steps: kobian::LIMIT_STEPS,
         make: |limit_steps| Ok(Box::new(Kobian::new(Expression::Surprise, limit_steps)?)),
     },
@@ -55,6 +70,21 @@ pub fn default_limit_steps(name: &str) -> Option<u32> {
     find(name).map(|world| world.limit_steps)
 }
 
+/// What there is to do in the world called `name`, in a line; `None` if there is no such world.
+pub fn summary(name: &str) -> Option<&'static str> {
+    find(name).map(|world| world.summary)
+}
+
+/// Where the world called `name` is described, a path in this repository; `None` if there is no such world.
+pub fn page(name: &str) -> Option<&'static str> {
+    find(name).map(|world| world.page)
+}
+
+/// How a person plays the world called `name`; `None` if there is no such world.
+pub fn controls(name: &str) -> Option<Controls> {
+    find(name).map(|world| world.controls)
+}
+
 fn find(name: &str) -> Option<&'static Entry> {
     WORLDS.iter().find(|world| world.name == name)
 }
@@ -62,4 +92,22 @@ fn find(name: &str) -> Option<&'static Entry> {
 fn expected_names() -> String {
     let quoted: Vec<_> = names().map(|name| format!("\"{name}\"")).collect();
     quoted.join(" or ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_world_can_be_told_of_and_played() {
+        for world in &WORLDS {
+            let spec = *make(&EnvConfig::new(world.name)).expect("the registry has it").spec();
+            assert_eq!(spec.name, world.name);
+            assert!(world.controls.idle_action < spec.actions.len(), "{}", world.name);
+            let is_sentence = |line: &str| !line.is_empty() && line.len() <= 80 && !line.ends_with('.');
+            assert!(is_sentence(world.summary) && !world.summary.contains('\n'), "{}", world.name);
+            let page = concat!(env!("CARGO_MANIFEST_DIR"), "/../../").to_owned() + world.page;
+            assert!(std::path::Path::new(&page).is_file(), "{page}");
+        }
+    }
 }

@@ -1,10 +1,7 @@
 //! `prf eval`: the greedy policy of a run, measured against the best and the worst player there is.
 
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
-use image::codecs::gif::{GifEncoder, Repeat};
-use image::{Delay, DynamicImage, GrayImage};
 use prf_core::Frame;
 use prf_dqn::checkpoint::{CheckpointStore, MODEL_FILE, Model};
 use prf_dqn::evaluate::{Episode, Spread, episode_seeds, play_greedily};
@@ -21,6 +18,7 @@ use super::learning;
 use crate::ExitStatus;
 use crate::args::EvalArgs;
 use crate::error::{CliError, Result};
+use crate::gif::GreyGif;
 use crate::printer::{Format, Printer};
 use crate::settings::{LoadedRun, load_run};
 
@@ -28,8 +26,8 @@ use crate::settings::{LoadedRun, load_run};
 const TOGETHER: usize = 64;
 /// Side of a pixel of the world in a rendered picture.
 const RENDER_SCALE: usize = 4;
-/// Time for which a frame is shown, in ms.
-const FRAME_MS: u64 = 60;
+/// Frames a second in a rendered picture.
+const RENDER_FPS: u32 = 15;
 
 #[derive(Debug, Serialize)]
 struct Report {
@@ -122,31 +120,23 @@ fn measure(network: &QNetwork, loaded: &LoadedRun, seeds: &[u64]) -> prf_dqn::Re
 fn render(network: &QNetwork, loaded: &LoadedRun, seed: u64, path: &Path) -> Result<()> {
     let mut task = Task::new(&loaded.config.task(), loaded.goal.as_ref())?;
     let actions = task.spec().actions.len();
-    let mut bytes = Vec::new();
-    let mut gif = GifEncoder::new_with_speed(&mut bytes, 10);
-    gif.set_repeat(Repeat::Infinite)?;
+    let (width, height) = (task.spec().width * RENDER_SCALE, task.spec().height * RENDER_SCALE);
+    let mut frame = Frame::new(width, height);
+    let mut gif = GreyGif::new(width, height, RENDER_FPS)?;
     task.reset(seed);
     let mut status = Status::Running;
-    while status == Status::Running {
-        gif.encode_frame(picture(&task))?;
+    loop {
+        task.environment().draw_into(&mut frame);
+        gif.add(frame.view())?;
+        if status.is_over() {
+            break;
+        }
         let values = network.q_values(task.observation(), 1)?;
         for action in greedy_actions(&values, actions) {
             status = task.step(action)?.status;
         }
     }
-    gif.encode_frame(picture(&task))?;
-    drop(gif);
-    write_whole(path, &bytes).map_err(|error| learning::explain(error.into(), None))
-}
-
-fn picture(task: &Task) -> image::Frame {
-    let spec = task.spec();
-    let (width, height) = (spec.width * RENDER_SCALE, spec.height * RENDER_SCALE);
-    let mut frame = Frame::new(width, height);
-    task.environment().draw_into(&mut frame);
-    let grey = GrayImage::from_raw(width as u32, height as u32, frame.as_slice().to_vec());
-    let rgba = DynamicImage::ImageLuma8(grey.expect("the frame has this size")).into_rgba8();
-    image::Frame::from_parts(rgba, 0, 0, Delay::from_saturating_duration(Duration::from_millis(FRAME_MS)))
+    write_whole(path, &gif.finish()?).map_err(|error| learning::explain(error.into(), None))
 }
 
 fn print(report: &Report, printer: &mut Printer) -> Result<()> {

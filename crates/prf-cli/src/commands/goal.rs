@@ -70,7 +70,7 @@ fn inside(picture: &Frame, rect: Rect, option: &str, path: &Path) -> Result<()> 
 fn finish(picture: Frame, kind: DescriptorKind, out: &GoalOut, printer: &mut Printer) -> Result<ExitStatus> {
     write(&picture, out)?;
     printer.line(out.out.display())?;
-    warn(picture, kind, printer);
+    warn_of(picture, kind, printer);
     Ok(ExitStatus::Done)
 }
 
@@ -81,7 +81,8 @@ fn write(picture: &Frame, out: &GoalOut) -> Result<()> {
     write_whole(&out.out, &io::png(picture.view()), out.force)
 }
 
-fn warn(picture: Frame, kind: DescriptorKind, printer: &mut Printer) {
+/// Says what is suspicious about a goal.
+pub(super) fn warn_of(picture: Frame, kind: DescriptorKind, printer: &mut Printer) {
     let mut params = RewardParams::default();
     params.hog.cell = kind.paper_cell();
     match check_goal(&Goal::from(picture), kind, params) {

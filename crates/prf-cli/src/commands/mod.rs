@@ -13,10 +13,12 @@ pub(crate) mod init;
 mod inspect;
 #[cfg(feature = "train")]
 mod learning;
+mod play;
 mod score;
 #[cfg(feature = "train")]
 mod train;
 mod tune;
+mod worlds;
 
 /// Does what the command line asks for.
 pub(crate) fn run(command: Command, printer: &mut Printer) -> Result<ExitStatus> {
@@ -32,6 +34,8 @@ pub(crate) fn run(command: Command, printer: &mut Printer) -> Result<ExitStatus>
         Command::Inspect(args) => inspect::run(&args, printer),
         Command::Tune(args) => tune::run(&args, printer),
         Command::Init(args) => init::run(&args, printer),
+        Command::Worlds(_) => worlds::run(printer),
+        Command::Play(args) => play::run(&args, printer),
         Command::Completions(args) => completions::run(&args, printer),
     }
 }

@@ -1,8 +1,6 @@
 //! `prf train`: from a config to a trained agent in a run folder.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::ValueEnum;
 use prf_dqn::estimate::Estimate;
@@ -13,6 +11,7 @@ use super::learning;
 use crate::ExitStatus;
 use crate::args::{Device, TrainArgs};
 use crate::error::{CliError, Result};
+use crate::interrupt::Interrupt;
 use crate::printer::Printer;
 use crate::progress::ProgressReporter;
 use crate::settings::{LoadedRun, load_run};
@@ -73,8 +72,8 @@ fn train(
     };
     run.write_manifest(&manifest(&trainer, false))?;
     let mut reporter = ProgressReporter::new();
-    let stop = stop_on_interrupt()?;
-    let ending = trainer.run(&mut reporter, &|| stop.load(Ordering::Relaxed));
+    let interrupt = Interrupt::listen()?;
+    let ending = trainer.run(&mut reporter, &|| interrupt.came());
     reporter.finish();
     let ending = ending?;
     run.write_manifest(&manifest(&trainer, ending == Ending::Finished))?;
@@ -146,11 +145,4 @@ fn shown(path: &Path) -> String {
 fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "._/-=:,+@%".contains(c);
     if word.chars().all(plain) { word.to_owned() } else { format!("'{}'", word.replace('\'', r"'\''")) }
-}
-
-fn stop_on_interrupt() -> Result<Arc<AtomicBool>> {
-    let stop = Arc::new(AtomicBool::new(false));
-    let handle = Arc::clone(&stop);
-    ctrlc::set_handler(move || handle.store(true, Ordering::Relaxed))?;
-    Ok(stop)
 }

@@ -105,6 +105,7 @@ fn apply_motion(args: &MotionOptions, config: &mut RewardConfig) -> Result<()> {
             ("--tau-step", args.tau_step.is_some()),
             ("--delta-divisor", args.delta_divisor.is_some()),
             ("--duration", args.duration.is_some()),
+            ("--skip-still", args.skip_still.is_some()),
         ];
         return refuse("motion", &given);
     };
@@ -116,6 +117,7 @@ fn change_motion(args: &MotionOptions, motion: &mut MotionParams) {
     motion.threshold = args.threshold.unwrap_or(motion.threshold);
     motion.tau_start = args.tau_start.unwrap_or(motion.tau_start);
     motion.tau_step = args.tau_step.unwrap_or(motion.tau_step);
+    motion.skip_still = args.skip_still.unwrap_or(motion.skip_still);
     if let Some(divisor) = args.delta_divisor {
         motion.delta = DeltaSchedule::Divisor(divisor);
     }

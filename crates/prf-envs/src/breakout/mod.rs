@@ -24,7 +24,7 @@ pub const LIMIT_STEPS: u32 = 100;
 /// Bricks of the whole wall, and so the largest score.
 pub const BRICKS: u32 = Wall::BRICKS;
 
-const STAY: usize = 0;
+pub(crate) const STAY: usize = 0;
 const LEFT: usize = 1;
 const RIGHT: usize = 2;
 const ACTIONS: [&str; 3] = ["stay", "left", "right"];

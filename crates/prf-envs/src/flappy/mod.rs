@@ -19,7 +19,7 @@ pub const NAME: &str = "flappy";
 /// Steps of an episode unless the config says otherwise: the paper's (section IV).
 pub const LIMIT_STEPS: u32 = 5_000;
 
-const GLIDE: usize = 0;
+pub(crate) const GLIDE: usize = 0;
 const FLAP: usize = 1;
 const ACTIONS: [&str; 2] = ["glide", "flap"];
 

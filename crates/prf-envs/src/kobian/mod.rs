@@ -21,7 +21,7 @@ use crate::{Environment, Error, Spec, Status, Step};
 /// Steps of an episode unless the config says otherwise: the paper's.
 pub const LIMIT_STEPS: u32 = 10;
 
-const REST: usize = 0;
+pub(crate) const REST: usize = 0;
 const ACTIONS: [&str; 1 + 2 * MOVEMENTS] = [
     "rest",
     "raise-brows",

@@ -3,7 +3,7 @@
 use prf_core::io::{FrameSource, MotionSequence};
 use prf_core::{DescriptorKind, Error, MotionParams, SequenceProblem};
 
-use super::{warn, write};
+use super::{warn_of, write};
 use crate::ExitStatus;
 use crate::args::{GoalOut, MotionArgs};
 use crate::error::{CliError, Result};
@@ -62,7 +62,7 @@ pub(super) fn make(
     if let Some(warning) = sequence.warning {
         printer.warning(warning, Some(warning.hint()));
     }
-    warn(sequence.template, DescriptorKind::Motion, printer);
+    warn_of(sequence.template, DescriptorKind::Motion, printer);
     Ok(())
 }
 
