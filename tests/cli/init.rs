@@ -37,11 +37,20 @@ fn a_preset_without_goal_is_one_file() {
     assert!(!folder.path().join("goals").exists());
 }
 
+/// All of them, with goals that can be read: each perceptual one scores its own goal.
 #[test]
-fn both_presets_fit_into_one_folder() {
+fn all_presets_fit_into_one_folder() {
     let folder = tempfile::tempdir().expect("a temporary folder can be made");
-    for preset in ["breakout", "breakout-vrf"] {
-        prf(folder.path()).args(["init", preset]).assert().success();
+    let faces = ["happy", "surprise"].map(|face| ["vrf", "kprf", "hprf"].map(|kind| format!("kobian-{face}-{kind}")));
+    let worlds = ["breakout", "breakout-vrf", "flappy", "flappy-vrf"].map(str::to_owned);
+    for preset in worlds.into_iter().chain(faces.into_iter().flatten()) {
+        prf(folder.path()).args(["init", &preset]).assert().success();
+        let file = format!("{preset}.toml");
+        let config: toml::Table = read(&folder.path().join(&file)).parse().expect("it is TOML");
+        let Some(goal) = config["reward"].get("goal").and_then(toml::Value::as_str) else { continue };
+        let score = prf(folder.path()).args(["score", "--config", &file, goal, goal]).assert().success();
+        let lines = String::from_utf8_lossy(&score.get_output().stdout).into_owned();
+        assert!(lines.lines().last().is_some_and(|line| line.contains("1.000000")), "{preset}: {lines}");
     }
 }
 

@@ -18,6 +18,22 @@ pub(crate) enum Preset {
     Breakout,
     /// Breakout with the game's own points as reward, to compare with
     BreakoutVrf,
+    /// Flappy Bird, from a cut-out of the bird between two pipes
+    Flappy,
+    /// Flappy Bird with the game's own reward, to compare with
+    FlappyVrf,
+    /// A robot's face learns to smile, from a moving picture of itself
+    KobianHappyKprf,
+    /// The same from pictures of a person
+    KobianHappyHprf,
+    /// The same with the distance to the face as reward, to compare with
+    KobianHappyVrf,
+    /// A robot's face learns to look surprised, from a moving picture of itself
+    KobianSurpriseKprf,
+    /// The same from pictures of a person
+    KobianSurpriseHprf,
+    /// The same with the distance to the face as reward, to compare with
+    KobianSurpriseVrf,
 }
 
 /// A file of a preset, at a path relative to the config's folder.
@@ -26,38 +42,69 @@ struct PresetFile {
     content: &'static [u8],
 }
 
-impl Preset {
-    fn config(self) -> PresetFile {
-        match self {
-            Self::Breakout => {
-                PresetFile { path: "breakout.toml", content: include_bytes!("../../../../configs/breakout.toml") }
-            }
-            Self::BreakoutVrf => PresetFile {
-                path: "breakout-vrf.toml",
-                content: include_bytes!("../../../../configs/breakout-vrf.toml"),
-            },
-        }
-    }
+/// A file under `configs/`, which is also its path beside the config.
+macro_rules! preset_file {
+    ($path:literal) => {
+        PresetFile { path: $path, content: include_bytes!(concat!("../../../../configs/", $path)) }
+    };
+}
 
-    fn goal(self) -> Option<PresetFile> {
+/// The pictures of a person who begins to smile.
+const HAPPY_PERSON: [PresetFile; 9] = [
+    preset_file!("goals/human/happy/01.png"),
+    preset_file!("goals/human/happy/02.png"),
+    preset_file!("goals/human/happy/03.png"),
+    preset_file!("goals/human/happy/04.png"),
+    preset_file!("goals/human/happy/05.png"),
+    preset_file!("goals/human/happy/06.png"),
+    preset_file!("goals/human/happy/07.png"),
+    preset_file!("goals/human/happy/08.png"),
+    preset_file!("goals/human/happy/09.png"),
+];
+
+/// The pictures of a person who is surprised.
+const SURPRISED_PERSON: [PresetFile; 9] = [
+    preset_file!("goals/human/surprise/01.png"),
+    preset_file!("goals/human/surprise/02.png"),
+    preset_file!("goals/human/surprise/03.png"),
+    preset_file!("goals/human/surprise/04.png"),
+    preset_file!("goals/human/surprise/05.png"),
+    preset_file!("goals/human/surprise/06.png"),
+    preset_file!("goals/human/surprise/07.png"),
+    preset_file!("goals/human/surprise/08.png"),
+    preset_file!("goals/human/surprise/09.png"),
+];
+
+impl Preset {
+    /// The config, which is the last, and what it needs.
+    fn files(self) -> (Vec<PresetFile>, PresetFile) {
         match self {
-            Self::Breakout => Some(PresetFile {
-                path: "goals/black.png",
-                content: include_bytes!("../../../../configs/goals/black.png"),
-            }),
-            Self::BreakoutVrf => None,
+            Self::Breakout => (vec![preset_file!("goals/black.png")], preset_file!("breakout.toml")),
+            Self::BreakoutVrf => (Vec::new(), preset_file!("breakout-vrf.toml")),
+            Self::Flappy => (vec![preset_file!("goals/flappy.png")], preset_file!("flappy.toml")),
+            Self::FlappyVrf => (Vec::new(), preset_file!("flappy-vrf.toml")),
+            Self::KobianHappyKprf => {
+                (vec![preset_file!("goals/kobian-happy.gif")], preset_file!("kobian-happy-kprf.toml"))
+            }
+            Self::KobianHappyHprf => (HAPPY_PERSON.into(), preset_file!("kobian-happy-hprf.toml")),
+            Self::KobianHappyVrf => (Vec::new(), preset_file!("kobian-happy-vrf.toml")),
+            Self::KobianSurpriseKprf => {
+                (vec![preset_file!("goals/kobian-surprise.gif")], preset_file!("kobian-surprise-kprf.toml"))
+            }
+            Self::KobianSurpriseHprf => (SURPRISED_PERSON.into(), preset_file!("kobian-surprise-hprf.toml")),
+            Self::KobianSurpriseVrf => (Vec::new(), preset_file!("kobian-surprise-vrf.toml")),
         }
     }
 }
 
 pub(crate) fn run(args: &InitArgs, printer: &mut Printer) -> Result<ExitStatus> {
-    let config = args.preset.config();
+    let (goals, config) = args.preset.files();
     let config_path = config_path(args.out.as_deref(), config.path);
     let folder = config_path.parent().unwrap_or(Path::new("")).to_owned();
 
     // The config last: once it is there, everything it names is there too.
     let mut files = Vec::new();
-    if let Some(goal) = args.preset.goal() {
+    for goal in goals {
         let path = folder.join(goal.path);
         if !holds(&path, goal.content) {
             files.push((path, goal.content));

@@ -106,7 +106,7 @@ impl Known {
     /// What the `kept`-th of the frames that were kept is called.
     pub(crate) fn name(&self, kept: usize) -> String {
         let index = self.footage.indices()[kept];
-        let score = self.footage.labels()[kept].score.map(|score| format!("score {score}"));
+        let score = self.footage.labels()[kept].score.map(|score| format!("score {}", short(score)));
         match (self.names.get(&index), score) {
             (Some(name), Some(score)) => format!("{score}, {name}"),
             (Some(name), None) => name.clone(),
@@ -244,6 +244,11 @@ enum Seen<'a> {
     Lost,
     /// Nobody knows how many that can't be read.
     LostRest,
+}
+
+/// A score in a few digits.
+fn short(score: f64) -> String {
+    if score.fract() == 0.0 { format!("{score:.0}") } else { format!("{score:.2}") }
 }
 
 /// Whether a path that can't be opened was meant to be one frame.

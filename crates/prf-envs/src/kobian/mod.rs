@@ -41,7 +41,7 @@ const ACTIONS: [&str; 1 + 2 * MOVEMENTS] = [
 /// What the face is to express. Each is a world of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Expression {
-    /// A wide mouth, slightly open, with its corners up, and the brows a little raised.
+    /// A wide mouth, slightly open, with its corners up, and the brows raised.
     Happy,
     /// Brows raised high, and a mouth that is narrow and wide open.
     Surprise,
@@ -61,7 +61,7 @@ impl Expression {
     #[must_use]
     pub fn target(self) -> Face {
         let levels = match self {
-            Expression::Happy => [1, 0, 0, 3, 2, 1],
+            Expression::Happy => [2, 0, 0, 3, 2, 1],
             Expression::Surprise => [3, 0, 0, -1, 0, 4],
         };
         Face::new(levels).unwrap_or_default()
@@ -155,7 +155,7 @@ impl Environment for Kobian {
             episode.status = Status::Truncated;
         }
         let Episode { face, status, .. } = *episode;
-        let score = -(face.actions_to(self.target.face) as f32);
+        let score = 0.0 - face.actions_to(self.target.face) as f32;
         Ok(Step { reward: self.target.closeness(face), score, status })
     }
 
@@ -184,7 +184,7 @@ impl Environment for Kobian {
     fn label(&self, _: f32) -> Label {
         let (face, target) = (self.face(), self.target.face);
         Label {
-            score: face.map(|face| -f64::from(face.distance_to(target))),
+            score: face.map(|face| 0.0 - f64::from(face.distance_to(target))),
             success: face.map(|face| face.actions_to(target) <= 1),
         }
     }
