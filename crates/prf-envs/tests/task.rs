@@ -1,6 +1,9 @@
 //! A world with its reward and state representation.
 
-use prf_core::{DescriptorKind, DirectDescriptor, EmaState, Frame, Goal, TaskDescriptor};
+use prf_core::{
+    DescriptorKind, DirectDescriptor, EmaState, Frame, Goal, MotionDescriptor, MotionParams, MotionTemplate,
+    TaskDescriptor,
+};
 use prf_envs::{EnvConfig, Error, RewardConfig, StateConfig, StateKind, Status, Task, TaskConfig};
 use proptest::prelude::*;
 
@@ -84,6 +87,74 @@ fn the_mirror_state_is_the_frame() -> Result<(), Error> {
     task.step(0)?;
     assert_eq!(task.observation(), task.mirror().as_slice());
     assert_ne!(task.observation(), black().as_slice());
+    Ok(())
+}
+
+/// A face that learns from motion, whose goal is what the oracle's whole episode moves.
+fn face() -> Task {
+    let mut world = prf_envs::registry::make(&EnvConfig::new("kobian-happy")).expect("it exists");
+    let mut template = MotionTemplate::new(resting()).expect("valid");
+    let mut frame = black();
+    world.reset(0);
+    for _ in 0..9 {
+        world.draw_into(&mut frame);
+        template.observe(frame.view()).expect("one size");
+        world.step(world.oracle_action()).expect("the action exists");
+    }
+    template.history_into(&mut frame);
+    let mut reward = RewardConfig::perceptual("goal.gif").with_descriptor(DescriptorKind::Motion);
+    reward.motion = Some(resting());
+    let state = StateConfig { kind: StateKind::Motion, ..StateConfig::default() };
+    let config = TaskConfig { env: EnvConfig::new("kobian-happy"), reward, state };
+    Task::new(&config, Some(&frame.into())).expect("the config is valid")
+}
+
+fn resting() -> MotionParams {
+    MotionParams { skip_still: true, ..MotionParams::default() }
+}
+
+/// The paper's `T_A`: of all frames of the episode, the first one included.
+#[test]
+fn the_motion_state_is_the_template_that_is_rewarded() -> Result<(), Error> {
+    let mut task = face();
+    assert_eq!(task.observation(), black().as_slice());
+    for _ in 0..2 {
+        task.reset(0);
+        let mut template = MotionTemplate::new(resting())?;
+        let mut picture = Frame::new(1, 1);
+        template.observe(task.mirror().view())?;
+        assert_eq!(task.observation(), black().as_slice());
+        let mut rewards = Vec::new();
+        for count in 0..10 {
+            rewards.push(task.step(oracle(&task))?.reward);
+            template.observe(task.mirror().view())?;
+            template.history_into(&mut picture);
+            assert_eq!(task.observation(), picture.as_slice(), "step {count}");
+            let goal = MotionDescriptor::new(&picture, resting(), RewardConfig::perceptual("").params());
+            assert!(goal.is_ok(), "the first step moves something already");
+        }
+        assert_eq!(rewards[7..], [1.0; 3], "made in 8 steps, and resting changes nothing: {rewards:?}");
+        assert!(rewards[..7].iter().all(|&reward| reward < 1.0));
+    }
+    Ok(())
+}
+
+#[test]
+fn a_motion_state_goes_on_where_it_was_saved() -> Result<(), Error> {
+    let (mut whole, mut resumed) = (face(), face());
+    whole.reset(0);
+    for cut in 0..10 {
+        resumed.load_state(&whole.save_state())?;
+        assert_eq!(whole.observation(), resumed.observation());
+        let action = if cut == 4 { 0 } else { oracle(&whole) };
+        assert_eq!(whole.step(action)?, resumed.step(action)?);
+        assert_eq!(whole.save_state(), resumed.save_state());
+    }
+    let state = whole.save_state();
+    for len in (0..state.len()).step_by(97) {
+        assert!(matches!(resumed.load_state(&state[..len]), Err(Error::BadState { .. })), "{len} bytes");
+    }
+    assert_eq!(resumed.save_state(), state);
     Ok(())
 }
 
