@@ -248,6 +248,7 @@ enum Seen<'a> {
 
 /// A score in a few digits.
 fn short(score: f64) -> String {
+    let score = score + 0.0; // a zero without a sign
     if score.fract() == 0.0 { format!("{score:.0}") } else { format!("{score:.2}") }
 }
 

@@ -70,7 +70,8 @@ mod tests {
 
     use super::*;
 
-    const SPEC: Spec = Spec { name: "garden", width: 8, height: 8, actions: &["wait", "left"], limit_steps: 50 };
+    const SPEC: Spec =
+        Spec { name: "garden", width: 8, height: 8, actions: &["wait", "left"], limit_steps: 50, chance: true };
 
     fn panel<'a>(message: &'a str, keys: Option<&'a Keys>) -> Panel<'a> {
         let episode =
