@@ -50,6 +50,20 @@ fn good(path: &Path, params: MotionParams) -> MotionSequence {
     read_motion(path, params, false).unwrap()
 }
 
+/// What counts as a movement is what the template takes for one.
+#[test]
+fn pauses_and_slow_movements_are_counted_as_the_template_does() {
+    let params = MotionParams { skip_still: true, ..MotionParams::default() };
+    let slow = folder(&[&[0], &[20], &[40], &[60], &[80], &[80], &[80]]);
+    let sequence = good(slow.path(), params);
+    assert_eq!((sequence.frames, sequence.movements, sequence.template.as_slice()), (7, 2, &[255][..]));
+    let problem = refused(slow.path(), MotionParams::default());
+    assert!(matches!(problem, SequenceProblem::Still { largest: 20, threshold: 30 }), "{problem:?}");
+    let back = folder(&[&[100], &[120], &[89]]);
+    let problem = refused(back.path(), params);
+    assert!(matches!(problem, SequenceProblem::Still { largest: 20, threshold: 30 }), "{problem:?}");
+}
+
 #[test]
 fn the_template_is_that_of_the_frames_in_natural_order() {
     let frames = walk(12);

@@ -59,8 +59,7 @@ impl Coverage {
             let share = (end.min(row as f32 + 1.0) - start.max(row as f32)).max(0.0);
             let next = x + share * slope;
             let changes = &mut self.changes[row * (width + 1)..][..width + 1];
-            let limit = width as f32;
-            add_to_row(changes, x.min(next).clamp(0.0, limit), x.max(next).clamp(0.0, limit), direction * share);
+            add_clipped(changes, x.min(next), x.max(next), direction * share);
             x = next;
         }
     }
@@ -78,6 +77,21 @@ impl Coverage {
                 *pixel = (before + (grey - before) * covered + 0.5) as u8;
             }
         }
+    }
+}
+
+/// Adds an edge as [`add_to_row`] does, which may reach over the box: what is left of it covers the whole row, what is right of it nothing.
+fn add_clipped(changes: &mut [f32], left: f32, right: f32, share: f32) {
+    let width = (changes.len() - 1) as f32;
+    let part = |from: f32, to: f32| if right > left { (to - from) / (right - left) } else { 1.0 };
+    if left < 0.0 {
+        changes[0] += share * part(left, right.min(0.0));
+    }
+    if right > 0.0 && left < width {
+        let (from, to) = (left.max(0.0), right.min(width));
+        add_to_row(changes, from, to, share * part(from, to));
+    } else if left >= 0.0 && right == 0.0 {
+        changes[0] += share;
     }
 }
 
@@ -107,5 +121,63 @@ fn add_to_row(changes: &mut [f32], left: f32, right: f32, share: f32) {
     }
     if let Some(next) = changes.get_mut(last) {
         *next += share - before;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rng::{stream, unit_f32};
+
+    fn filled(outline: &[[f32; 2]], width: usize, height: usize) -> Frame {
+        let mut frame = Frame::new(width, height);
+        Coverage::default().fill(&mut frame, outline, 255);
+        frame
+    }
+
+    /// The share of a pixel's points, on a fine grid, that a triangle holds.
+    fn sampled([a, b, c]: [[f32; 2]; 3], x: usize, y: usize) -> f32 {
+        const FINE: usize = 24;
+        let side = |p: [f32; 2], q: [f32; 2], at: [f32; 2]| {
+            (q[0] - p[0]) * (at[1] - p[1]) - (q[1] - p[1]) * (at[0] - p[0]) >= 0.0
+        };
+        let holds = |at: [f32; 2]| {
+            let sides = [side(a, b, at), side(b, c, at), side(c, a, at)];
+            sides == [true; 3] || sides == [false; 3]
+        };
+        let fine = |index: usize, step: usize| index as f32 + (step as f32 + 0.5) / FINE as f32;
+        let points = (0..FINE * FINE).map(|point| [fine(x, point % FINE), fine(y, point / FINE)]);
+        points.filter(|&at| holds(at)).count() as f32 / (FINE * FINE) as f32
+    }
+
+    #[test]
+    fn shares_by_hand() {
+        // From 1.25 to 3.5 and 0.5 to 2, on 4 × 3 pixels.
+        let frame = filled(&[[1.25, 0.5], [3.5, 0.5], [3.5, 2.0], [1.25, 2.0]], 4, 3);
+        assert_eq!(frame.as_slice(), [0, 96, 128, 64, 0, 191, 255, 128, 0, 0, 0, 0]);
+        // The other way round, and half of it outside.
+        let frame = filled(&[[-3.0, 1.0], [-3.0, 9.0], [1.5, 9.0], [1.5, 1.0]], 3, 2);
+        assert_eq!(frame.as_slice(), [0, 0, 0, 255, 128, 0]);
+        assert_eq!(filled(&[[5.0, 0.0], [9.0, 0.0], [9.0, 3.0]], 4, 3).as_slice(), [0; 12]);
+    }
+
+    #[test]
+    fn triangles_cover_what_they_hold_also_across_borders() {
+        let mut rng = stream(1, "coverage", 0);
+        for round in 0..400 {
+            // Every other one has its corners on borders of pixels.
+            let mut place = || {
+                let at = unit_f32(&mut rng) * 24.0 - 8.0;
+                if round % 2 == 0 { at } else { at.round() }
+            };
+            let corners: [[f32; 2]; 3] = std::array::from_fn(|_| [place(), place()]);
+            let frame = filled(&corners, 9, 8);
+            for y in 0..8 {
+                for x in 0..9 {
+                    let (got, expected) = (f32::from(frame.view().row(y)[x]) / 255.0, sampled(corners, x, y));
+                    assert!((got - expected).abs() < 0.06, "{corners:?} at ({x}, {y}): {got}, sampled {expected}");
+                }
+            }
+        }
     }
 }

@@ -29,7 +29,10 @@ pub fn survey(
     label: impl Fn(Label) -> Label,
     footage: &mut Footage,
 ) -> Result<(), Error> {
-    let long = EnvConfig { limit_steps: config.limit_steps.max(LONG), ..config.clone() };
+    // Without chance all episodes of an oracle are one, which ends with the task.
+    let has_chance = registry::make(config)?.spec().chance;
+    let long_steps = if has_chance { config.limit_steps.max(LONG) } else { config.limit_steps };
+    let long = EnvConfig { limit_steps: long_steps, ..config.clone() };
     let shares: [(&EnvConfig, &mut dyn Player, usize); 3] = [
         (config, &mut Random::new(), EPISODES),
         (config, &mut Clumsy::new(), EPISODES),
@@ -53,21 +56,24 @@ fn take(
     footage: &mut Footage,
 ) -> Result<(), Error> {
     let mut world = registry::make(config)?;
-    let mut count = 0;
+    let mut counts = Vec::with_capacity(seeds.len());
     for &seed in seeds {
-        play(world.as_mut(), player, seed, |_, shown| {
-            count += usize::from(matches!(shown, Shown::News { .. }));
+        let mut news = 0;
+        play(world.as_mut(), player, seed, |_, label| {
+            news += usize::from(label.is_some());
             Ok(())
         })?;
+        counts.push(news);
     }
-    let stride = (count / share.max(1)).max(1);
+    let stride = (counts.iter().sum::<usize>() / share.max(1)).max(1);
     let mut index = 0;
-    for &seed in seeds {
+    for (&seed, &count) in seeds.iter().zip(&counts) {
         footage.begin();
-        play(world.as_mut(), player, seed, |frame, shown| {
-            let Shown::News { label: found, is_last } = shown else { return footage.pass(frame.view()) };
+        let end = index + count;
+        play(world.as_mut(), player, seed, |frame, found| {
+            let Some(found) = found else { return footage.pass(frame.view()) };
             // The last frame may be the only one that shows the finished task.
-            let is_taken = index % stride == 0 || is_last;
+            let is_taken = index % stride == 0 || index + 1 == end;
             index += 1;
             if is_taken { footage.observe(frame.view(), label(found)) } else { footage.pass(frame.view()) }
         })?;
@@ -80,37 +86,25 @@ fn episode_seed(seed: u64, index: u64) -> u64 {
     below(&mut rng, 1 << 53) as u64
 }
 
-/// What is new in a frame.
-enum Shown {
-    /// The episode's first frame, before any step, or one that looks like the one before it.
-    Nothing,
-    News {
-        label: Label,
-        is_last: bool,
-    },
-}
-
-/// Plays an episode and shows all its frames.
+/// Plays an episode and shows all its frames, with a label those that show something new: not the first one, before any step, and none that
+/// looks like the one before it.
 fn play(
     world: &mut dyn Environment,
     player: &mut dyn Player,
     seed: u64,
-    mut look: impl FnMut(&Frame, Shown) -> Result<(), CoreError>,
+    mut look: impl FnMut(&Frame, Option<Label>) -> Result<(), CoreError>,
 ) -> Result<(), Error> {
     let mut frame = Frame::new(world.spec().width, world.spec().height);
     world.reset(seed);
     player.begin(seed);
     world.draw_into(&mut frame);
-    look(&frame, Shown::Nothing)?;
+    look(&frame, None)?;
     let mut before = frame.clone();
     loop {
         let step = world.step(player.action(world))?;
-        let is_last = step.status.is_over();
         world.draw_into(&mut frame);
-        let shown =
-            if frame == before { Shown::Nothing } else { Shown::News { label: world.label(step.score), is_last } };
-        look(&frame, shown)?;
-        if is_last {
+        look(&frame, (frame != before).then(|| world.label(step.score)))?;
+        if step.status.is_over() {
             return Ok(());
         }
         before.as_mut_slice().copy_from_slice(frame.as_slice());

@@ -129,6 +129,17 @@ fn a_survey_shows_faces_on_their_way_and_arrived() {
     assert!(far > 100, "{far}");
 }
 
+/// Of few frames too, one of each episode of the oracle is the finished face, at which it rests.
+#[test]
+fn a_short_survey_shows_the_finished_face() {
+    for (face, frames) in [("kobian-happy", 24), ("kobian-surprise", 9)] {
+        let mut footage = Footage::new(None, 2_000).expect("above 0");
+        survey(&EnvConfig::new(face), 1, frames, |label| label, &mut footage).expect("the world is there");
+        let arrived = footage.labels().iter().filter(|label| label.score == Some(0.0)).count();
+        assert!(arrived >= 4, "{face}: {arrived} of {}", footage.frames().len());
+    }
+}
+
 #[test]
 fn states_of_another_expression_are_refused() {
     let happy = started(Expression::Happy).save_state();

@@ -32,8 +32,8 @@ pub trait TaskDescriptor: Send {
     /// Begins an episode: what was seen before no longer counts.
     fn reset(&mut self);
 
-    /// Takes in what the agent's world looks like now without scoring it: so motion sees what the first step moves. The others remember
-    /// nothing.
+    /// Takes in what the agent's world looks like now without scoring it, so that a motion descriptor sees what the first step
+    /// moves. A descriptor that remembers frames has to override it; the others need not.
     ///
     /// # Errors
     ///

@@ -39,6 +39,8 @@ use crate::{Error, Frame, FrameView, MotionParams, MotionTemplate, RewardParams,
 #[derive(Clone, Debug)]
 pub struct MotionDescriptor {
     motion: MotionTemplate,
+    /// What it was prepared for, if it was.
+    shape: Option<[usize; 2]>,
     template: Frame,
     comparison: Comparison,
 }
@@ -53,6 +55,7 @@ impl MotionDescriptor {
     pub fn new(goal: &Frame, motion: MotionParams, params: RewardParams) -> Result<MotionDescriptor, Error> {
         Ok(MotionDescriptor {
             motion: MotionTemplate::new(motion).map_err(|error| error.within("motion"))?,
+            shape: None,
             template: Frame::new(1, 1),
             comparison: Comparison::new(goal, params)?,
         })
@@ -60,7 +63,8 @@ impl MotionDescriptor {
 }
 
 impl TaskDescriptor for MotionDescriptor {
-    fn prepare(&mut self, _: [usize; 2]) -> Result<(), Error> {
+    fn prepare(&mut self, shape: [usize; 2]) -> Result<(), Error> {
+        self.shape = Some(shape);
         Ok(())
     }
 
@@ -87,7 +91,17 @@ impl TaskDescriptor for MotionDescriptor {
     }
 
     fn load_state(&mut self, bytes: &[u8]) -> Result<(), Error> {
-        self.motion.load_state(bytes)
+        let mut motion = self.motion.clone();
+        motion.load_state(bytes)?;
+        match (motion.shape(), self.shape) {
+            (got, Some(shape)) if got != shape && got != [0, 0] => {
+                Err(Error::Restore { got: format!("frames of {got:?}"), expected: format!("{shape:?}") })
+            }
+            _ => {
+                self.motion = motion;
+                Ok(())
+            }
+        }
     }
 }
 
@@ -160,6 +174,16 @@ mod tests {
         }
         let longer = [&state[..], &[0]].concat();
         assert!(matches!(descriptor.load_state(&longer), Err(Error::Restore { .. })));
+        // The time, behind the tag and four numbers: 0.5 after two iterations.
+        let at = 7 + 4 * 8;
+        assert_eq!(state[at..at + 4], 0.5f32.to_le_bytes());
+        let later = [&state[..at], &3e8f32.to_le_bytes(), &state[at + 4..]].concat();
+        assert!(matches!(descriptor.load_state(&later), Err(Error::Restore { .. })));
+        let mut prepared = self::descriptor();
+        prepared.prepare([20, 23]).expect("motion takes any size");
+        assert!(matches!(prepared.load_state(&state), Err(Error::Restore { .. })), "frames were 24 x 20");
+        prepared.prepare([20, 24]).expect("motion takes any size");
+        assert!(prepared.load_state(&state).is_ok());
         assert_eq!(descriptor.save_state(), state);
     }
 

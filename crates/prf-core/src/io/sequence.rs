@@ -80,8 +80,6 @@ impl MotionSequence {
 /// A sequence of which some frames have been read.
 struct Reading {
     motion: MotionTemplate,
-    /// The last frame.
-    before: Vec<u8>,
     frames: u64,
     /// The largest change of a pixel so far.
     largest: u8,
@@ -94,28 +92,30 @@ struct Reading {
 impl Reading {
     fn new(params: MotionParams) -> Result<Reading, Error> {
         let motion = MotionTemplate::new(params)?;
-        let (before, damaged) = (Vec::new(), Vec::new());
-        Ok(Reading { motion, before, frames: 0, largest: 0, movements: 0, newest: [0; 2], damaged })
+        Ok(Reading { motion, frames: 0, largest: 0, movements: 0, newest: [0; 2], damaged: Vec::new() })
     }
 
     fn take(&mut self, file: &Path, frame: FrameView<'_>) -> Result<(), Error> {
+        let change = self.change(frame);
         self.motion.observe(frame).map_err(|error| match error {
             Error::FrameSize { shape, expected } => {
                 sequence_error(file, SequenceProblem::FrameSize { shape, expected })
             }
             other => other,
         })?;
-        let pairs = frame.as_slice().iter().zip(&self.before);
-        let change = pairs.map(|(now, before)| now.abs_diff(*before)).max().unwrap_or(0);
         self.largest = self.largest.max(change);
         if change > self.motion.params().threshold {
             self.movements += 1;
             self.newest = [self.iteration(), self.newest[0]];
         }
-        self.before.clear();
-        self.before.extend_from_slice(frame.as_slice());
         self.frames += 1;
         Ok(())
+    }
+
+    /// The largest change of a pixel against what the template compares the frame with.
+    fn change(&self, frame: FrameView<'_>) -> u8 {
+        let pairs = frame.as_slice().iter().zip(&self.motion.state().reference);
+        pairs.map(|(now, before)| now.abs_diff(*before)).max().unwrap_or(0)
     }
 
     /// The template's last iteration, from 0.

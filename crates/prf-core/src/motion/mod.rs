@@ -168,8 +168,7 @@ impl MotionTemplate {
         self.state.shape
     }
 
-    /// How many silhouettes have been taken in; of frames that were observed, one fewer than there
-    /// were, without those that were passed over.
+    /// How many silhouettes have been taken in: one fewer than frames were observed, not counting those that were passed over.
     #[must_use]
     pub fn iterations(&self) -> u64 {
         self.state.iterations
@@ -211,13 +210,21 @@ impl MotionTemplate {
         bytes::write(&self.state)
     }
 
-    /// Takes up what [`save_state`](MotionTemplate::save_state) gave.
+    /// Takes up what [`save_state`](MotionTemplate::save_state) gave, of a template that has only
+    /// [observed](MotionTemplate::observe) and so is at its schedule's time.
     ///
     /// # Errors
     ///
-    /// As [`MotionTemplate::restore`], also when the bytes are none that it gives.
+    /// As [`MotionTemplate::restore`], also when the bytes are none that it gives or their time is another. The template is
+    /// then left as it was.
     pub fn load_state(&mut self, bytes: &[u8]) -> Result<(), Error> {
-        self.restore(&bytes::read(bytes)?)
+        let state = bytes::read(bytes)?;
+        let tau = state.iterations.checked_sub(1).map_or(0.0, |last| self.params.tau(last) as f32);
+        if state.tau != tau {
+            let got = format!("the time {} after {} iterations", state.tau, state.iterations);
+            return Err(Error::Restore { got, expected: format!("{tau}") });
+        }
+        self.restore(&state)
     }
 
     /// The times of the schedule's next iteration, each rounded once.

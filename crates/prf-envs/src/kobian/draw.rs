@@ -31,7 +31,7 @@ const EYE: Point = [27.0, 37.0];
 /// Half the thickness of a brow at each of its vertices, from the outer end to the inner one.
 const BROW_HALF: [f32; 4] = [0.5, 1.7, 2.0, 1.5];
 
-/// Memory for patches; when it is full, all are forgotten.
+/// About as much memory is for the patches of brows, and as much for those of mouths; when it is full, all of a kind are forgotten.
 const MAX_PATCH_BYTES: usize = 1 << 20;
 
 /// Draws faces. What never moves is kept for the next frame of the same size, and so is each position of the brows and of the mouth: there
