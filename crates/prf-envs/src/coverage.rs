@@ -111,12 +111,12 @@ fn add_to_row(changes: &mut [f32], left: f32, right: f32, share: f32) {
     let per_column = share / (right - left);
     // What is covered of the pixel's column, from the edge's first one on.
     let mut before = 0.0;
-    for column in first..last {
-        let crossed_here = right.min(column as f32 + 1.0) - left.max(column as f32);
-        let crossed_before = left.max(column as f32) - left;
-        let here_middle = left.max(column as f32) + crossed_here / 2.0;
-        let covered = per_column * (crossed_before + crossed_here * (column as f32 + 1.0 - here_middle));
-        changes[column] += covered - before;
+    for (column, change) in (first..last).zip(&mut changes[first..]) {
+        let [from, to] = [left.max(column as f32), right.min(column as f32 + 1.0)];
+        let (crossed_before, crossed_here) = (from - left, to - from);
+        let right_of_middle = column as f32 + 1.0 - (from + crossed_here / 2.0);
+        let covered = per_column * (crossed_before + crossed_here * right_of_middle);
+        *change += covered - before;
         before = covered;
     }
     if let Some(next) = changes.get_mut(last) {
