@@ -227,6 +227,24 @@ fn the_world_stands_until_the_first_key_and_then_goes_on_to_its_end() {
     assert!(terminal.text().contains("flappy, seed 1, played by you"), "{}", terminal.text());
 }
 
+/// Wide, brows, wide, corners, brows, wide, corners, open: the smile, one key at a time.
+#[test]
+fn a_face_waits_for_each_action() {
+    let args = ["kobian-happy", "--gif", "smile.gif", "--motion-goal", "goal.png", "--skip-still"];
+    let mut terminal = Terminal::play(&args, 90, 30);
+    terminal.wait_for_words("kobian-happy, seed 0");
+    for (count, key) in ["8", "2", "8", "a", "2", "8", "a", "c"].into_iter().enumerate() {
+        assert_eq!(terminal.steps(), Some(count));
+        terminal.press(key);
+        terminal.wait_for_step(count + 1);
+    }
+    terminal.wait_for_words("reward 1");
+    terminal.press("q");
+    assert_eq!(terminal.end(), 0);
+    assert!(terminal.text().contains("score   0") && terminal.text().contains("8, stopped"), "{}", terminal.text());
+    assert!(["smile.gif", "goal.png"].iter().all(|name| terminal.path().join(name).is_file()));
+}
+
 #[test]
 fn keys_move_the_paddle() {
     let mut terminal = Terminal::play(&["breakout", "--fps", "1", "--frames", "frames", "--steps", "1"], 80, 24);
