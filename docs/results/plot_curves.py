@@ -51,8 +51,8 @@ FIGURES = {
         0,
         ("upper left", 0.92),
     ),
-    "kobian-happy": Figure("kobian/happy-", FACES, {"oracle": 0, "random player": -9.408}, -14, ("lower right", 0)),
-    "kobian-surprise": Figure("kobian/surprise-", FACES, {"oracle": 0, "random player": -10.196}, -16, ("lower right", 0)),
+    "kobian-happy": Figure("kobian/happy-", FACES, {"oracle": 0, "random player": -9.408}, -19, ("lower right", 0)),
+    "kobian-surprise": Figure("kobian/surprise-", FACES, {"oracle": 0, "random player": -10.196}, -21, ("lower right", 0)),
 }
 
 
