@@ -67,9 +67,8 @@ fn row(name: &str, expression: Expression, Played { face, actions, rewards }: &P
 /// The greedy episode of a run.
 fn play(run: &Path) -> Result<(Expression, Played), Box<dyn Error>> {
     let config: RunConfig = toml::from_str(&std::fs::read_to_string(RunDir::at(run).config_path())?)?;
-    let is_of = |expression: &Expression| expression.name() == config.env.name;
-    let expression = [Expression::Happy, Expression::Surprise].into_iter().find(is_of);
-    let expression = expression.ok_or_else(|| format!("{} is a run of {}", run.display(), config.env.name))?;
+    let expression = Expression::of_world(&config.env.name)
+        .ok_or_else(|| format!("{} is a run of {}", run.display(), config.env.name))?;
     let goal = config.reward.goal.as_ref().map(|goal| io::read_frame(run.join(goal))).transpose()?.map(Goal::from);
     let mut task = Task::new(&config.task(), goal.as_ref())?;
     let newest = CheckpointStore::list(run)?.pop().ok_or_else(|| format!("{} has no checkpoint", run.display()))?;

@@ -57,8 +57,7 @@ fn row(config: &RunConfig, goal: &Goal, depth: usize) -> Result<(), Box<dyn Erro
         let (_, action) = best(&mut task, depth)?;
         last = task.step(action)?.reward;
     }
-    let is_of = |expression: &Expression| expression.name() == config.env.name;
-    let expression = [Expression::Happy, Expression::Surprise].into_iter().find(is_of).ok_or("expected a face")?;
+    let expression = Expression::of_world(&config.env.name).ok_or("expected a config of a face")?;
     let mut world = Kobian::new(expression, config.env.limit_steps)?;
     world.load_state(&task.environment().save_state())?;
     let face = world.face().ok_or("no episode")?;

@@ -27,6 +27,7 @@ fn they_conform() -> Result<(), Error> {
 #[test]
 fn the_oracle_makes_the_face_with_steps_to_spare() {
     for expression in EXPRESSIONS {
+        assert_eq!(Expression::of_world(expression.name()), Some(expression));
         assert!(Face::default().actions_to(expression.target()) <= 9);
         let mut world = registry::make(&EnvConfig::new(expression.name())).expect("it exists");
         let episode = play_episode(world.as_mut(), &mut Oracle, 0).expect("the oracle's actions exist");

@@ -57,6 +57,12 @@ impl Expression {
         }
     }
 
+    /// The expression that the world of this name is for.
+    #[must_use]
+    pub fn of_world(name: &str) -> Option<Expression> {
+        [Expression::Happy, Expression::Surprise].into_iter().find(|expression| expression.name() == name)
+    }
+
     /// The face to be made.
     #[must_use]
     pub fn target(self) -> Face {
