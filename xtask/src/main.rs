@@ -13,6 +13,7 @@ const USAGE: &str = "\
 usage: cargo xtask setup                   fetch libtorch, if it is not there yet
        cargo xtask test                    set everything up and run every test
        cargo xtask compare [perception]    time prf against OpenCV and scikit-image, and write it down
+       cargo xtask compare python          time the Python package against OpenCV, ALE, EnvPool and others
        cargo prf ARGS…                     set libtorch up, build prf and run it with ARGS";
 
 /// Exit status of a command line that makes no sense.

@@ -1,6 +1,7 @@
 //! Virtual environments under `target/`, each made once and kept.
 
 use std::env;
+use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -62,4 +63,11 @@ impl Venv {
 /// Where cargo builds.
 pub(crate) fn target(root: &Path) -> PathBuf {
     env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), |dir| root.join(dir))
+}
+
+/// `PATH` with this folder before all others.
+pub(crate) fn with_first(folder: &Path) -> Result<OsString> {
+    let path = env::var_os("PATH").unwrap_or_default();
+    let folders = std::iter::once(folder.to_path_buf()).chain(env::split_paths(&path));
+    Ok(env::join_paths(folders)?)
 }

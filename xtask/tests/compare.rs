@@ -98,9 +98,9 @@ fn results_that_agree_and_results_that_do_not() {
 
 fn row(group: &'static str, title: &str, median: f64, target: Option<f64>) -> Row {
     Row {
-        group,
+        group: group.to_owned(),
         title: title.to_owned(),
-        peer: "OpenCV",
+        peer: "OpenCV".to_owned(),
         ours_ns: 1_234.0,
         theirs_ns: 99_960.0,
         ratio: Ratio { median, middle_half: [1.0, 3.5], all: [0.25, 7.0] },

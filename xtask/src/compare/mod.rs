@@ -13,6 +13,7 @@ mod machine;
 mod measure;
 mod perception;
 mod pictures;
+mod python;
 mod setup;
 mod statistics;
 mod table;
@@ -33,6 +34,8 @@ pub use worker::{Answer, parse_answer};
 pub enum Subject {
     /// From pixels to a reward, against OpenCV and scikit-image.
     Perception,
+    /// The Python package: its calls, its rewards against OpenCV, its environments against others.
+    Python,
 }
 
 impl Subject {
@@ -41,6 +44,7 @@ impl Subject {
         match words {
             [] => Some(Subject::Perception),
             [word] if word == "perception" => Some(Subject::Perception),
+            [word] if word == "python" => Some(Subject::Python),
             _ => None,
         }
     }
@@ -53,6 +57,7 @@ impl Subject {
 pub fn run(root: &Path, subject: Subject) -> Result<ExitCode> {
     match subject {
         Subject::Perception => perception::run(root)?,
+        Subject::Python => python::run(root)?,
     }
     Ok(ExitCode::SUCCESS)
 }

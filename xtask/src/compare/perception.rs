@@ -96,9 +96,9 @@ impl Sides {
         let plan = Plan::new(first);
         let [ours, theirs] = in_turns(plan.rounds, |side| Ok(self.ask(case, names[side], plan.turns[side])?.1))?;
         Ok(Row {
-            group: case.group,
+            group: case.group.to_owned(),
             title: case.title.clone(),
-            peer: peer.title,
+            peer: peer.title.to_owned(),
             ours_ns: median(&ours),
             theirs_ns: median(&theirs),
             ratio: Ratio::of(&ours, &theirs),

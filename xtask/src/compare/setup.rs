@@ -9,7 +9,7 @@ use serde_json::Value;
 
 use crate::cargo;
 use crate::python::Python;
-use crate::venv::{Venv, target};
+use crate::venv::{Venv, target, with_first};
 
 /// Builds our worker.
 ///
@@ -36,24 +36,46 @@ fn executable(messages: &str) -> Option<PathBuf> {
 /// # Errors
 /// If there is no Python that serves, or pip can't fetch them.
 pub(super) fn peers(root: &Path) -> Result<Command> {
-    let folder = root.join("tests/compare");
-    let requirements = folder.join("requirements.txt");
+    let venv = fetched(root, "venv", "requirements.txt")?;
+    Ok(script(root, &venv, "perception_worker.py"))
+}
+
+/// Fetches what the package is measured against, unless it is there, and builds and installs the package as it is released.
+///
+/// # Errors
+/// As [`peers`]; if the package can't be built.
+pub(super) fn package(root: &Path) -> Result<Command> {
+    let venv = fetched(root, "python", "requirements-python.txt")?;
+    let mut pip = venv.pip_install();
+    pip.args(["--no-build-isolation", "--no-deps", "--force-reinstall"]).arg(root.join("crates/prf-py"));
+    // maturin is found there.
+    pip.env("PATH", with_first(&venv.folder().join("bin"))?);
+    succeed(pip, "the Python package can't be built")?;
+    Ok(script(root, &venv, "python_package.py"))
+}
+
+/// A virtual environment with what a file in `tests/compare` names.
+fn fetched(root: &Path, name: &str, requirements: &str) -> Result<Venv> {
+    let requirements = root.join("tests/compare").join(requirements);
     let python = Python::find(&env::var_os("PATH").unwrap_or_default())?;
-    let venv = Venv::new(target(root).join("compare").join("venv"), &python, &requirements)?;
+    let venv = Venv::new(target(root).join("compare").join(name), &python, &requirements)?;
     if !venv.is_ready() {
         python.require_venv()?;
         succeed(venv.make(&python), "the virtual environment can't be made")?;
         let mut pip = venv.pip_install();
         pip.args(["--only-binary=:all:", "--requirement"]).arg(&requirements);
-        succeed(
-            pip,
-            "pip can't fetch what tests/compare/requirements.txt names: check the network and pip's settings",
-        )?;
+        let complaint =
+            format!("pip can't fetch what {} names: check the network and pip's settings", requirements.display());
+        succeed(pip, &complaint)?;
         venv.mark_ready()?;
     }
-    let mut worker = venv.python();
-    worker.arg(folder.join("perception_worker.py"));
-    Ok(worker)
+    Ok(venv)
+}
+
+fn script(root: &Path, venv: &Venv, name: &str) -> Command {
+    let mut command = venv.python();
+    command.arg(root.join("tests/compare").join(name));
+    command
 }
 
 /// Runs a command whose output is for the user's eyes; ours is kept for results.

@@ -8,11 +8,11 @@ use super::statistics::Ratio;
 #[derive(Clone, Debug)]
 pub struct Row {
     /// Rows of one group, which follow each other, make one table.
-    pub group: &'static str,
+    pub group: String,
     /// What was done on which pictures.
     pub title: String,
     /// Against whom.
-    pub peer: &'static str,
+    pub peer: String,
     /// Median of a call of ours.
     pub ours_ns: f64,
     /// Median of a call of theirs.
@@ -44,7 +44,7 @@ pub fn table(rows: &[Row]) -> String {
     for row in rows {
         if row.group != group {
             let gap = if group.is_empty() { "" } else { "\n" };
-            group = row.group;
+            group = &row.group;
             let _ = writeln!(text, "{gap}### {group}\n\n{HEAD}");
         }
         let Ratio { median, middle_half: [low, high], all: [least, most] } = row.ratio;

@@ -1,7 +1,6 @@
 //! The Python package: installed into a virtual environment of its own and tested there.
 
 use std::env;
-use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -9,7 +8,7 @@ use anyhow::{Context, Result, ensure};
 
 use super::Runner;
 use crate::python::Python;
-use crate::venv::{Venv, target};
+use crate::venv::{Venv, target, with_first};
 
 /// Installs the package as a user would and runs its tests. The environment is kept for the next
 /// time, when nothing need be fetched.
@@ -68,10 +67,4 @@ fn pip_install(venv: &Venv) -> Result<Command> {
         // With checks on, like the other tests, and sharing what is built already.
         .env("MATURIN_PEP517_ARGS", "--profile=dev");
     Ok(command)
-}
-
-pub(super) fn with_first(folder: &Path) -> Result<OsString> {
-    let path = env::var_os("PATH").unwrap_or_default();
-    let folders = std::iter::once(folder.to_path_buf()).chain(env::split_paths(&path));
-    Ok(env::join_paths(folders)?)
 }
