@@ -1,14 +1,15 @@
 //! `prf.hog`
 
+use numpy::ndarray::Ix2;
 use numpy::{IntoPyArray, PyArrayDyn, prelude::*};
 use prf_core::{Error, FrameView, Hog, HogLayout, HogParams, PlaneView};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
-use crate::arg::Arg;
 use crate::error::value_error;
 use crate::image::{Image, Pixels};
 use crate::limits::check_features;
-use crate::options::HogOptions;
+use crate::options::Options;
 
 /// Histograms of oriented gradients of a grey picture.
 ///
@@ -59,28 +60,20 @@ use crate::options::HogOptions;
 /// (2, 2, 1, 1, 4)
 #[pyfunction]
 #[pyo3(
-    signature = (
-        image, *, orientations=Arg::of(9), signed=Arg::of(false), cell=None, cell_px=None, block_cells=Arg::of(1),
-        norm=Arg::of("l2".into()), feature_vector=Arg::of(true)
-    ),
-    text_signature = "(image, *, orientations=9, signed=False, cell=None, cell_px=None, block_cells=1, \
-                      norm='l2', feature_vector=True)"
+    signature = (image, **options),
+    text_signature = "(image, *, orientations=9, signed=False, cell=None, cell_px=None, block_cells=1, norm='l2', \
+                      feature_vector=True)"
 )]
-#[expect(clippy::too_many_arguments, reason = "keyword arguments in Python")]
 pub(crate) fn hog<'py>(
     image: &Bound<'py, PyAny>,
-    orientations: Arg<usize>,
-    signed: Arg<bool>,
-    cell: Option<Arg<f32>>,
-    cell_px: Option<Arg<usize>>,
-    block_cells: Arg<usize>,
-    norm: Arg<String>,
-    feature_vector: Arg<bool>,
+    options: Option<Bound<'py, PyDict>>,
 ) -> PyResult<Bound<'py, PyArrayDyn<f32>>> {
-    let params = HogOptions { orientations, signed, cell, cell_px, block_cells, norm }.params()?;
-    let feature_vector = feature_vector.get("feature_vector")?;
+    let options = Options::new("hog", options);
+    let params = options.hog(HogParams::default().cell)?;
+    let feature_vector = options.get("feature_vector")?.unwrap_or(true);
+    options.finish()?;
     let py = image.py();
-    let image = Image::read("image", image)?;
+    let image = Image::<Ix2>::read("image", image)?;
     let (shape, pixels) = (image.shape(), image.pixels()?);
     check_features(&params, shape)?;
     let (features, layout) =

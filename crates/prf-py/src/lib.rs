@@ -1,20 +1,26 @@
 //! The native half of the Python package `prf`. It reads arrays, lets go of the GIL, calls `prf_core`
 //! and turns errors into exceptions; nothing is computed here.
 //!
-//! Docs of functions are their docstrings. `python/prf/_native.pyi` has their types.
+//! Docs of functions and classes are their docstrings. `python/prf/_native.pyi` has their types.
 
 mod arg;
+mod batch;
 mod error;
+mod goal;
 mod hog;
 mod image;
 mod limits;
 mod options;
+mod results;
 mod reward;
 
 use pyo3::prelude::*;
 
-#[pymodule]
+/// Nothing here needs the GIL: what is shared is frozen or behind a lock.
+#[pymodule(gil_used = false)]
 mod _native {
+    #[pymodule_export]
+    use super::goal::{DirectGoal, Goal, MotionGoal, WindowGoal};
     #[pymodule_export]
     use super::hog::hog;
     #[pymodule_export]

@@ -1,9 +1,9 @@
 //! How large things may be. Rust ends the process where memory runs out, and a process with a Python
 //! interpreter in it must not end: what can't be meant is refused before it is asked for.
 
-use prf_core::HogParams;
-use pyo3::PyResult;
+use prf_core::{CellSize, HogParams};
 use pyo3::exceptions::PyValueError;
+use pyo3::{PyErr, PyResult};
 
 /// The longest side of a picture, in pixels.
 pub(crate) const MAX_SIDE: usize = 1 << 14;
@@ -13,18 +13,37 @@ const MAX_FEATURES: usize = 1 << 28;
 
 /// Refuses parameters that would give a picture of this shape more than [`MAX_FEATURES`]. `params` are
 /// valid and the picture's sides are 1 to [`MAX_SIDE`], so nothing here overflows.
-pub(crate) fn check_features(params: &HogParams, [height, width]: [usize; 2]) -> PyResult<()> {
+pub(crate) fn check_features(params: &HogParams, shape: [usize; 2]) -> PyResult<()> {
+    let [height, width] = shape;
     // Too large a block or cell is made to fit, as a reward does with small crops.
     let side = width.min(height);
     let block_cells = params.block_cells.min(side);
     let cell_px = params.cell.cell_px(height).min(side / block_cells);
-    let blocks = [height, width].map(|side| side / cell_px - block_cells + 1);
+    let blocks = shape.map(|side| side / cell_px - block_cells + 1);
     let len = blocks[0] * blocks[1] * block_cells * block_cells * params.orientations;
-    if len <= MAX_FEATURES {
-        return Ok(());
-    }
-    Err(PyValueError::new_err(format!(
+    if len <= MAX_FEATURES { Ok(()) } else { Err(too_many(shape, len)) }
+}
+
+/// Refuses parameters that would give some part of a picture of this shape more than [`MAX_FEATURES`].
+pub(crate) fn check_crops(params: &HogParams, shape: [usize; 2]) -> PyResult<()> {
+    let [height, width] = shape;
+    let (side, long) = (width.min(height), width.max(height));
+    let block_cells = params.block_cells.min(side);
+    // Where a part is narrow and cells are made to fit, it is fewer than two blocks wide.
+    let narrow = 2 * block_cells * long;
+    let others = match params.cell {
+        CellSize::Px(px) => (height / px) * (width / px),
+        // Half a cell may be lost to rounding.
+        CellSize::Fraction(fraction) => ((2.0 / f64::from(fraction)).ceil() as usize).saturating_mul(width),
+    };
+    let blocks = narrow.max(others).min(height * width);
+    let len = blocks * block_cells * block_cells * params.orientations;
+    if len <= MAX_FEATURES { Ok(()) } else { Err(too_many(shape, len)) }
+}
+
+fn too_many([height, width]: [usize; 2], len: usize) -> PyErr {
+    PyValueError::new_err(format!(
         "a HOG of {width}x{height} px would have {len} features, expected at most {MAX_FEATURES}: take larger \
          cells, fewer cells a block or a smaller picture"
-    )))
+    ))
 }

@@ -1,13 +1,13 @@
 //! `prf.reward` and `prf.distance`
 
-use prf_core::{DirectDescriptor, FrameView, RewardParams, Score, TaskDescriptor, crop_box};
+use prf_core::{DescriptorKind, DirectDescriptor, FrameView, RewardParams, Score, TaskDescriptor, crop_box};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
-use crate::arg::Arg;
 use crate::error::value_error;
-use crate::image::Array;
+use crate::image::Picture;
 use crate::limits::check_features;
-use crate::options::{HogOptions, choice};
+use crate::options::Options;
 
 /// How much a frame looks like the goal: ``exp(-distance(goal, frame, ...))``.
 ///
@@ -32,27 +32,16 @@ use crate::options::{HogOptions, choice};
 /// True
 #[pyfunction]
 #[pyo3(
-    signature = (
-        goal, frame, *, orientations=Arg::of(9), signed=Arg::of(false), cell=None, cell_px=None,
-        block_cells=Arg::of(1), norm=Arg::of("l2".into()), scale=Arg::of("sqrt-blocks".into())
-    ),
+    signature = (goal, frame, **options),
     text_signature = "(goal, frame, *, orientations=9, signed=False, cell=None, cell_px=None, block_cells=1, \
                       norm='l2', scale='sqrt-blocks')"
 )]
-#[expect(clippy::too_many_arguments, reason = "keyword arguments in Python")]
 pub(crate) fn reward(
     goal: &Bound<'_, PyAny>,
     frame: &Bound<'_, PyAny>,
-    orientations: Arg<usize>,
-    signed: Arg<bool>,
-    cell: Option<Arg<f32>>,
-    cell_px: Option<Arg<usize>>,
-    block_cells: Arg<usize>,
-    norm: Arg<String>,
-    scale: Arg<String>,
+    options: Option<Bound<'_, PyDict>>,
 ) -> PyResult<f32> {
-    let hog = HogOptions { orientations, signed, cell, cell_px, block_cells, norm };
-    Ok(score(goal, frame, hog, scale)?.reward)
+    Ok(score(goal, frame, Options::new("reward", options))?.reward)
 }
 
 /// Distance between the HOGs of a goal and a frame.
@@ -96,41 +85,25 @@ pub(crate) fn reward(
 /// 0.0
 #[pyfunction]
 #[pyo3(
-    signature = (
-        goal, frame, *, orientations=Arg::of(9), signed=Arg::of(false), cell=None, cell_px=None,
-        block_cells=Arg::of(1), norm=Arg::of("l2".into()), scale=Arg::of("sqrt-blocks".into())
-    ),
+    signature = (goal, frame, **options),
     text_signature = "(goal, frame, *, orientations=9, signed=False, cell=None, cell_px=None, block_cells=1, \
                       norm='l2', scale='sqrt-blocks')"
 )]
-#[expect(clippy::too_many_arguments, reason = "keyword arguments in Python")]
 pub(crate) fn distance(
     goal: &Bound<'_, PyAny>,
     frame: &Bound<'_, PyAny>,
-    orientations: Arg<usize>,
-    signed: Arg<bool>,
-    cell: Option<Arg<f32>>,
-    cell_px: Option<Arg<usize>>,
-    block_cells: Arg<usize>,
-    norm: Arg<String>,
-    scale: Arg<String>,
+    options: Option<Bound<'_, PyDict>>,
 ) -> PyResult<f32> {
-    let hog = HogOptions { orientations, signed, cell, cell_px, block_cells, norm };
-    Ok(score(goal, frame, hog, scale)?.distance)
+    Ok(score(goal, frame, Options::new("distance", options))?.distance)
 }
 
-fn score(goal: &Bound<'_, PyAny>, frame: &Bound<'_, PyAny>, hog: HogOptions, scale: Arg<String>) -> PyResult<Score> {
-    let params = RewardParams { hog: hog.params()?, scale: choice("scale", scale)? };
+fn score(goal: &Bound<'_, PyAny>, frame: &Bound<'_, PyAny>, options: Options<'_>) -> PyResult<Score> {
+    let params = options.reward(DescriptorKind::Direct.paper_cell())?;
+    options.finish()?;
     let py = goal.py();
-    let (goal, frame) = (Array::read("goal", goal)?, Array::read("frame", frame)?);
-    let goal = view("goal", &goal)?;
-    let frame = view("frame", &frame)?;
+    let (goal, frame) = (Picture::read("goal", goal)?, Picture::read("frame", frame)?);
+    let (goal, frame) = (goal.view()?, frame.view()?);
     py.detach(|| compare(goal, frame, params))
-}
-
-fn view<'a>(name: &str, array: &'a Array<'_, u8>) -> PyResult<FrameView<'a>> {
-    let [height, width] = array.shape();
-    FrameView::new(width, height, array.pixels()?).map_err(|error| value_error(name, &error))
 }
 
 fn compare(goal: FrameView<'_>, frame: FrameView<'_>, params: RewardParams) -> PyResult<Score> {
