@@ -1,5 +1,5 @@
 //! The native half of the Python package `prf`. It reads arrays, lets go of the GIL, calls `prf_core`
-//! and turns errors into exceptions; nothing is computed here.
+//! and `prf_envs`, and turns errors into exceptions; nothing is computed here.
 //!
 //! Docs of functions and classes are their docstrings. `python/prf/_native.pyi` has their types.
 
@@ -11,8 +11,10 @@ mod hog;
 mod image;
 mod limits;
 mod options;
+mod presets;
 mod results;
 mod reward;
+mod tasks;
 
 use pyo3::prelude::*;
 
@@ -24,7 +26,11 @@ mod _native {
     #[pymodule_export]
     use super::hog::hog;
     #[pymodule_export]
+    use super::presets::{preset_goal, preset_limit_steps};
+    #[pymodule_export]
     use super::reward::{distance, reward};
+    #[pymodule_export]
+    use super::tasks::Tasks;
     #[pymodule_export]
     #[expect(non_upper_case_globals, reason = "Python's name for it")]
     const __version__: &str = env!("CARGO_PKG_VERSION");

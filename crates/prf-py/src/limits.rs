@@ -26,7 +26,26 @@ pub(crate) fn check_features(params: &HogParams, shape: [usize; 2]) -> PyResult<
 
 /// Refuses parameters that would give some part of a picture of this shape more than [`MAX_FEATURES`].
 pub(crate) fn check_crops(params: &HogParams, shape: [usize; 2]) -> PyResult<()> {
-    let [height, width] = shape;
+    let len = features_of_crops(params, shape);
+    if len <= MAX_FEATURES { Ok(()) } else { Err(too_many(shape, len)) }
+}
+
+/// Refuses so many tasks, whose pictures are no larger than one of these shapes, that together they would have more than
+/// [`MAX_FEATURES`].
+pub(crate) fn check_tasks(params: &HogParams, shapes: &[[usize; 2]], count: usize) -> PyResult<()> {
+    let most = shapes.iter().map(|&shape| features_of_crops(params, shape)).max().unwrap_or(0);
+    let len = most.saturating_mul(count);
+    if len <= MAX_FEATURES {
+        return Ok(());
+    }
+    Err(PyValueError::new_err(format!(
+        "num_envs: got {count}, whose HOGs could have {len} features, expected at most {MAX_FEATURES}: take fewer \
+         environments, larger cells or fewer cells a block"
+    )))
+}
+
+/// The most that the HOG of a part of a picture of this shape can have.
+fn features_of_crops(params: &HogParams, [height, width]: [usize; 2]) -> usize {
     let (side, long) = (width.min(height), width.max(height));
     let block_cells = params.block_cells.min(side);
     // Where a part is narrow and cells are made to fit, it is fewer than two blocks wide.
@@ -37,8 +56,7 @@ pub(crate) fn check_crops(params: &HogParams, shape: [usize; 2]) -> PyResult<()>
         CellSize::Fraction(fraction) => ((2.0 / f64::from(fraction)).ceil() as usize).saturating_mul(width),
     };
     let blocks = narrow.max(others).min(height * width);
-    let len = blocks * block_cells * block_cells * params.orientations;
-    if len <= MAX_FEATURES { Ok(()) } else { Err(too_many(shape, len)) }
+    blocks * block_cells * block_cells * params.orientations
 }
 
 fn too_many([height, width]: [usize; 2], len: usize) -> PyErr {

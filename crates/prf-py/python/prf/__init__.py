@@ -8,9 +8,26 @@
 
 Pictures are two-dimensional arrays of grey values. Functions let other threads run while they compute,
 so a picture must not be written to meanwhile.
+
+Where Gymnasium is installed, ``PRF/Breakout-v0``, ``PRF/FlappyBird-v0`` and ``PRF/KobianFace-v0`` are registered: see
+``prf.envs``. ``prf.wrappers`` gives other environments a reward from pictures.
 """
 
-from prf._native import DirectGoal, Goal, MotionGoal, WindowGoal, __version__, distance, hog, reward
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+from prf._extras import has_gymnasium
+from prf._native import (
+    DirectGoal,
+    Goal,
+    MotionGoal,
+    WindowGoal,
+    __version__,
+    distance,
+    hog,
+    preset_goal,
+    reward,
+)
 from prf._results import Match, Rect, Score
 
 __all__ = [
@@ -24,5 +41,22 @@ __all__ = [
     "__version__",
     "distance",
     "hog",
+    "preset_goal",
     "reward",
 ]
+
+if has_gymnasium():
+    from prf._registration import register_envs
+
+    register_envs()
+
+if TYPE_CHECKING:
+    from prf import envs as envs
+    from prf import wrappers as wrappers
+else:
+
+    def __getattr__(name: str) -> object:
+        """Imports what needs Gymnasium when it is asked for."""
+        if name in ("envs", "wrappers"):
+            return import_module(f"{__name__}.{name}")
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -1,3 +1,4 @@
+from collections.abc import Sequence
 from os import PathLike
 from typing import Any, Literal, TypeAlias, final
 
@@ -17,10 +18,13 @@ __all__ = [
     "DirectGoal",
     "Goal",
     "MotionGoal",
+    "Tasks",
     "WindowGoal",
     "__version__",
     "distance",
     "hog",
+    "preset_goal",
+    "preset_limit_steps",
     "reward",
 ]
 
@@ -158,3 +162,40 @@ class MotionGoal(Goal):
     def duration(self) -> float | None: ...
     @property
     def skip_still(self) -> bool: ...
+
+def preset_goal(name: str, goal: _PictureOrPath | None = None) -> DirectGoal | WindowGoal | MotionGoal: ...
+def preset_limit_steps(name: str) -> int: ...
+@final
+class Tasks:
+    def __new__(
+        cls,
+        preset: str,
+        *,
+        num_envs: int = 1,
+        goal: Goal | None = None,
+        state: str | None = None,
+        max_episode_steps: int | None = None,
+        threads: int | None = None,
+    ) -> Self: ...
+    @property
+    def actions(self) -> Sequence[str]: ...
+    @property
+    def shape(self) -> tuple[int, int]: ...
+    def reset(
+        self, mask: NDArray[np.bool_], seeds: NDArray[np.uint64], observations: NDArray[np.uint8]
+    ) -> None: ...
+    def step(
+        self,
+        actions: NDArray[np.int64],
+        restart: NDArray[np.bool_] | None,
+        seeds: NDArray[np.uint64],
+        observations: NDArray[np.uint8],
+        rewards: NDArray[np.float64],
+        scores: NDArray[np.float64],
+        terminated: NDArray[np.bool_],
+        truncated: NDArray[np.bool_],
+    ) -> int: ...
+    def render(self, frames: NDArray[np.uint8]) -> None: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[str], dict[str, Any]]: ...
+    def __getstate__(self) -> bytes: ...
+    def __setstate__(self, state: bytes) -> None: ...

@@ -13,7 +13,8 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
 pub(crate) use self::classes::{DirectGoal, MotionGoal, WindowGoal};
-use self::parts::{GoalParts, array, decimal, name_of};
+pub(crate) use self::parts::GoalParts;
+use self::parts::{array, decimal, name_of};
 use self::watcher::Watcher;
 use crate::batch::{self, Threads};
 use crate::error::value_error;
@@ -41,7 +42,6 @@ pub(crate) struct Goal {
 /// # Errors
 ///
 /// TypeError where it is none.
-#[expect(dead_code, reason = "for environments")]
 pub(crate) fn goal_parts(goal: &Bound<'_, PyAny>) -> PyResult<GoalParts> {
     Ok(goal.cast::<Goal>()?.get().parts.clone())
 }

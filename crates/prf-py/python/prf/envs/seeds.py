@@ -1,0 +1,16 @@
+"""Which episode of a world a seed stands for."""
+
+import numpy as np
+
+EPISODES = 2**64
+"""A world has so many."""
+
+
+def episode_of(seed: int) -> int:
+    """The episode of this seed: the one with the same number."""
+    return seed % EPISODES
+
+
+def draw_seed(generator: np.random.Generator) -> int:
+    """Any episode."""
+    return int(generator.integers(EPISODES, dtype=np.uint64))
