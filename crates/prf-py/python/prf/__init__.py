@@ -10,19 +10,50 @@ Pictures are two-dimensional arrays of grey values. Functions let other threads 
 so a picture must not be written to meanwhile.
 """
 
-from prf._native import DirectGoal, Goal, MotionGoal, WindowGoal, __version__, distance, hog, reward
+from prf._native import (
+    DirectGoal,
+    EmaState,
+    Goal,
+    MotionGoal,
+    MotionTemplate,
+    WindowGoal,
+    __version__,
+    crop,
+    crop_box,
+    crop_box_batch,
+    distance,
+    distance_batch,
+    hog,
+    hog_batch,
+    match_template,
+    match_template_batch,
+    motion_template,
+    reward,
+    reward_batch,
+)
 from prf._results import Match, Rect, Score
 
 __all__ = [
     "DirectGoal",
+    "EmaState",
     "Goal",
     "Match",
     "MotionGoal",
+    "MotionTemplate",
     "Rect",
     "Score",
     "WindowGoal",
     "__version__",
+    "crop",
+    "crop_box",
+    "crop_box_batch",
     "distance",
+    "distance_batch",
     "hog",
+    "hog_batch",
+    "match_template",
+    "match_template_batch",
+    "motion_template",
     "reward",
+    "reward_batch",
 ]
