@@ -6,9 +6,15 @@
 use std::sync::{Mutex, PoisonError};
 use std::thread::{self, Builder, available_parallelism};
 
-use pyo3::PyResult;
+use numpy::ndarray::{Dimension, Ix3};
+use numpy::{Element, PyArray, PyArrayMethods};
+use prf_core::Error;
 use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyTuple;
 
+use crate::error::value_error;
+use crate::image::Array;
 use crate::options::Options;
 
 /// More threads than any machine has cores for.
@@ -44,6 +50,30 @@ impl Threads {
             None => available_parallelism().map_or(1, Into::into).min(useful),
         }
     }
+}
+
+/// Writes what `work` makes of each of the pictures `name` to an array of `(count, *shape)`. `state` is what every thread
+/// begins with.
+pub(crate) fn each<'py, P: Element, T: Element, D: Dimension, S: Clone + Send>(
+    name: &str,
+    pictures: &Array<'py, P, Ix3>,
+    threads: Threads,
+    state: S,
+    shape: &[usize],
+    work: impl Fn(&mut S, &[P], &mut [T]) -> Result<(), Error> + Send + Sync,
+) -> PyResult<Bound<'py, PyArray<T, D>>> {
+    let (py, count, pixels) = (pictures.py(), pictures.count(), pictures.pixels()?);
+    // NumPy's own way, as it raises a MemoryError where there is no room.
+    let shape = PyTuple::new(py, [&[count], shape].concat())?;
+    let results = py.import("numpy")?.call_method1("empty", (shape, T::get_dtype(py)))?;
+    let results = results.cast_into::<PyArray<T, D>>()?;
+    let mut writing = results.try_readwrite()?;
+    let values = writing.as_slice_mut()?;
+    let mut states = vec![state; threads.count(count, pictures.shape())];
+    py.detach(|| run(&mut states, count, pixels, values, work))
+        .map_err(|(at, error)| value_error(&format!("{name}[{at}]"), &error))?;
+    drop(writing);
+    Ok(results)
 }
 
 /// Calls `work` for each of `count` inputs, which lie one after the other in `inputs` as their results do in `outputs`.

@@ -2,7 +2,7 @@
 
 use numpy::ndarray::{Dimension, Ix2, Ix3};
 use numpy::{Element, PyArray, PyReadonlyArray, PyUntypedArray, prelude::*};
-use prf_core::FrameView;
+use prf_core::{Frame, FrameView};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
@@ -51,12 +51,14 @@ impl Picture<'_> {
     }
 }
 
-impl Pictures<'_> {
-    /// How many there are.
+impl<T: Element> Array<'_, T, Ix3> {
+    /// How many pictures there are.
     pub(crate) fn count(&self) -> usize {
         self.0.shape()[0]
     }
+}
 
+impl Pictures<'_> {
     /// The pictures in order, which can be read without the GIL.
     pub(crate) fn views(&self) -> PyResult<Vec<FrameView<'_>>> {
         let [height, width] = self.shape();
@@ -66,7 +68,7 @@ impl Pictures<'_> {
 
 impl<'py, T: Element, R: Rank> Array<'py, T, R> {
     /// Nothing where the array holds values of another type.
-    pub(crate) fn of(name: &str, array: &Bound<'py, PyUntypedArray>) -> PyResult<Option<Self>> {
+    fn of(name: &str, array: &Bound<'py, PyUntypedArray>) -> PyResult<Option<Self>> {
         if !array.dtype().is_equiv_to(&T::get_dtype(array.py())) {
             return Ok(None);
         }
@@ -78,6 +80,10 @@ impl<'py, T: Element, R: Rank> Array<'py, T, R> {
         let numpy = array.py().import("numpy")?;
         let copy = numpy.call_method("array", (array,), Some(&[("order", "C")].into_py_dict(array.py())?))?;
         Ok(Some(Array(copy.cast::<PyArray<T, R>>()?.try_readonly()?)))
+    }
+
+    pub(crate) fn py(&self) -> Python<'py> {
+        self.0.py()
     }
 
     /// `[height, width]` of a picture.
@@ -113,42 +119,24 @@ impl<'py, R: Rank> Image<'py, R> {
             Err(wrong_dtype(name, array, "uint8, float32 or float64"))
         }
     }
-
-    /// `[height, width]` of a picture.
-    pub(crate) fn shape(&self) -> [usize; 2] {
-        match self {
-            Image::Bytes(array) => array.shape(),
-            Image::Floats(array) => array.shape(),
-            Image::Doubles(array) => array.shape(),
-        }
-    }
-
-    pub(crate) fn pixels(&self) -> PyResult<Pixels<'_>> {
-        Ok(match self {
-            Image::Bytes(array) => Pixels::Bytes(array.pixels()?),
-            Image::Floats(array) => Pixels::Floats(array.pixels()?),
-            Image::Doubles(array) => Pixels::Doubles(array.pixels()?),
-        })
-    }
-}
-
-/// The pixels of an [`Image`], row by row; can be read without the GIL.
-#[derive(Clone, Copy)]
-pub(crate) enum Pixels<'a> {
-    Bytes(&'a [u8]),
-    Floats(&'a [f32]),
-    Doubles(&'a [f64]),
 }
 
 fn view([height, width]: [usize; 2], pixels: &[u8]) -> PyResult<FrameView<'_>> {
     FrameView::new(width, height, pixels).map_err(|error| value_error("frame", &error))
 }
 
+/// Which pixels the argument `mask` says count: an array of `uint8` or `bool`.
+pub(crate) fn mask(value: &Bound<'_, PyAny>) -> PyResult<Frame> {
+    let Some(bools) = Array::<bool, Ix2>::of("mask", untyped::<Ix2>("mask", value)?)? else {
+        return Ok(Picture::read("mask", value)?.view()?.to_frame());
+    };
+    let [height, width] = bools.shape();
+    let pixels = bools.pixels()?.iter().map(|&counts| u8::from(counts)).collect();
+    Frame::from_vec(width, height, pixels).map_err(|error| value_error("mask", &error))
+}
+
 /// The array itself, of any type. One with masked values is refused: what the mask hides would count.
-pub(crate) fn untyped<'a, 'py, R: Rank>(
-    name: &str,
-    value: &'a Bound<'py, PyAny>,
-) -> PyResult<&'a Bound<'py, PyUntypedArray>> {
+fn untyped<'a, 'py, R: Rank>(name: &str, value: &'a Bound<'py, PyAny>) -> PyResult<&'a Bound<'py, PyUntypedArray>> {
     let array = value.cast::<PyUntypedArray>().map_err(|_| {
         let got = value.get_type();
         PyTypeError::new_err(format!("{name}: got {}, expected a NumPy array of shape {}", name_of(&got), R::SHAPE))

@@ -5,16 +5,22 @@
 
 mod arg;
 mod batch;
+mod crop;
+mod ema;
 mod error;
+mod exclusive;
 mod goal;
 mod hog;
 mod image;
 mod limits;
+mod matching;
+mod motion;
 mod options;
 mod presets;
 mod results;
 mod reward;
 mod tasks;
+mod values;
 
 use pyo3::prelude::*;
 
@@ -22,13 +28,21 @@ use pyo3::prelude::*;
 #[pymodule(gil_used = false)]
 mod _native {
     #[pymodule_export]
+    use super::crop::{crop, crop_box, crop_box_batch};
+    #[pymodule_export]
+    use super::ema::EmaState;
+    #[pymodule_export]
     use super::goal::{DirectGoal, Goal, MotionGoal, WindowGoal};
     #[pymodule_export]
-    use super::hog::hog;
+    use super::hog::{hog, hog_batch};
+    #[pymodule_export]
+    use super::matching::{match_template, match_template_batch};
+    #[pymodule_export]
+    use super::motion::{MotionTemplate, motion_template};
     #[pymodule_export]
     use super::presets::{preset_goal, preset_limit_steps};
     #[pymodule_export]
-    use super::reward::{distance, reward};
+    use super::reward::{distance, distance_batch, reward, reward_batch};
     #[pymodule_export]
     use super::tasks::Tasks;
     #[pymodule_export]

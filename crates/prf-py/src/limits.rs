@@ -1,7 +1,7 @@
 //! How large things may be. Rust ends the process where memory runs out, and a process with a Python
 //! interpreter in it must not end: what can't be meant is refused before it is asked for.
 
-use prf_core::{CellSize, HogParams};
+use prf_core::{CellSize, FrameView, HogParams, crop_box};
 use pyo3::exceptions::PyValueError;
 use pyo3::{PyErr, PyResult};
 
@@ -57,6 +57,15 @@ fn features_of_crops(params: &HogParams, [height, width]: [usize; 2]) -> usize {
     };
     let blocks = narrow.max(others).min(height * width);
     blocks * block_cells * block_cells * params.orientations
+}
+
+/// Refuses parameters that would give what is not black in a picture more than [`MAX_FEATURES`].
+pub(crate) fn check_picture(params: &HogParams, picture: FrameView<'_>) -> PyResult<()> {
+    // Hardly ever is the crop needed, so it isn't searched for twice.
+    check_crops(params, [picture.height(), picture.width()]).or_else(|_| {
+        let crop = crop_box(picture);
+        check_features(params, [crop.height, crop.width])
+    })
 }
 
 fn too_many([height, width]: [usize; 2], len: usize) -> PyErr {

@@ -1,12 +1,14 @@
 //! `prf.reward` and `prf.distance`
 
-use prf_core::{DescriptorKind, DirectDescriptor, FrameView, RewardParams, Score, TaskDescriptor, crop_box};
+use numpy::PyArray1;
+use prf_core::{DescriptorKind, DirectDescriptor, FrameView, RewardParams, Score, TaskDescriptor};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+use crate::batch::{self, Threads};
 use crate::error::value_error;
-use crate::image::Picture;
-use crate::limits::check_features;
+use crate::image::{Picture, Pictures};
+use crate::limits::check_picture;
 use crate::options::Options;
 
 /// How much a frame looks like the goal: ``exp(-distance(goal, frame, ...))``.
@@ -97,22 +99,115 @@ pub(crate) fn distance(
     Ok(score(goal, frame, Options::new("distance", options))?.distance)
 }
 
+/// :func:`reward` of many frames and one goal, on several threads.
+///
+/// :meth:`DirectGoal.rewards` is the same for a goal that is used more than once.
+///
+/// Parameters
+/// ----------
+/// goal : (H, W) ndarray of uint8
+///     What the finished task looks like, in grey.
+/// frames : (N, h, w) ndarray of uint8
+///     What is compared with it. N may be 0.
+/// orientations, signed, cell, cell_px, block_cells, norm, scale
+///     As for :func:`distance`.
+/// threads : int, 1 to 1024, optional
+///     The most threads; as many as there are cores where it isn't given. The result is the same.
+///
+/// Returns
+/// -------
+/// (N,) ndarray of float32
+///     What :func:`reward` gives for each.
+///
+/// Raises
+/// ------
+/// TypeError, ValueError
+///     As :func:`distance`.
+#[pyfunction]
+#[pyo3(
+    signature = (goal, frames, **options),
+    text_signature = "(goal, frames, *, orientations=9, signed=False, cell=None, cell_px=None, block_cells=1, \
+                      norm='l2', scale='sqrt-blocks', threads=None)"
+)]
+pub(crate) fn reward_batch<'py>(
+    goal: &Bound<'py, PyAny>,
+    frames: &Bound<'py, PyAny>,
+    options: Option<Bound<'py, PyDict>>,
+) -> PyResult<Bound<'py, PyArray1<f32>>> {
+    scores(goal, frames, Options::new("reward_batch", options), |score| score.reward)
+}
+
+/// :func:`distance` of many frames and one goal, on several threads.
+///
+/// Parameters
+/// ----------
+/// goal : (H, W) ndarray of uint8
+///     What the finished task looks like, in grey.
+/// frames : (N, h, w) ndarray of uint8
+///     What is compared with it. N may be 0.
+/// orientations, signed, cell, cell_px, block_cells, norm, scale
+///     As for :func:`distance`.
+/// threads : int, 1 to 1024, optional
+///     The most threads; as many as there are cores where it isn't given. The result is the same.
+///
+/// Returns
+/// -------
+/// (N,) ndarray of float32
+///     What :func:`distance` gives for each.
+///
+/// Raises
+/// ------
+/// TypeError, ValueError
+///     As :func:`distance`.
+#[pyfunction]
+#[pyo3(
+    signature = (goal, frames, **options),
+    text_signature = "(goal, frames, *, orientations=9, signed=False, cell=None, cell_px=None, block_cells=1, \
+                      norm='l2', scale='sqrt-blocks', threads=None)"
+)]
+pub(crate) fn distance_batch<'py>(
+    goal: &Bound<'py, PyAny>,
+    frames: &Bound<'py, PyAny>,
+    options: Option<Bound<'py, PyDict>>,
+) -> PyResult<Bound<'py, PyArray1<f32>>> {
+    scores(goal, frames, Options::new("distance_batch", options), |score| score.distance)
+}
+
 fn score(goal: &Bound<'_, PyAny>, frame: &Bound<'_, PyAny>, options: Options<'_>) -> PyResult<Score> {
     let params = options.reward(DescriptorKind::Direct.paper_cell())?;
     options.finish()?;
-    let py = goal.py();
+    let py = frame.py();
     let (goal, frame) = (Picture::read("goal", goal)?, Picture::read("frame", frame)?);
     let (goal, frame) = (goal.view()?, frame.view()?);
-    py.detach(|| compare(goal, frame, params))
+    py.detach(|| {
+        check_picture(&params.hog, frame)?;
+        let mut descriptor = descriptor(goal, params)?;
+        descriptor.observe(frame).map_err(|error| value_error("frame", &error))
+    })
 }
 
-fn compare(goal: FrameView<'_>, frame: FrameView<'_>, params: RewardParams) -> PyResult<Score> {
-    let goal = goal.to_frame();
-    // The common size is one of the two crops', so checking both is checking it.
-    for picture in [goal.view(), frame] {
-        let crop = crop_box(picture);
-        check_features(&params.hog, [crop.height, crop.width])?;
-    }
-    let mut descriptor = DirectDescriptor::new(&goal, params).map_err(|error| value_error("goal", &error))?;
-    descriptor.observe(frame).map_err(|error| value_error("frame", &error))
+fn scores<'py>(
+    goal: &Bound<'py, PyAny>,
+    frames: &Bound<'py, PyAny>,
+    options: Options<'py>,
+    value: impl Fn(Score) -> f32 + Sync,
+) -> PyResult<Bound<'py, PyArray1<f32>>> {
+    let params = options.reward(DescriptorKind::Direct.paper_cell())?;
+    let threads = Threads::read(&options)?;
+    options.finish()?;
+    let (goal, frames) = (Picture::read("goal", goal)?, Pictures::read("frames", frames)?);
+    let (goal, views, [height, width]) = (goal.view()?, frames.views()?, frames.shape());
+    let descriptor = frames.py().detach(|| {
+        views.into_iter().try_for_each(|frame| check_picture(&params.hog, frame))?;
+        descriptor(goal, params)
+    })?;
+    batch::each("frames", &frames, threads, descriptor, &[], |descriptor, pixels, values| {
+        values[0] = value(descriptor.observe(FrameView::new(width, height, pixels)?)?);
+        Ok(())
+    })
+}
+
+fn descriptor(goal: FrameView<'_>, params: RewardParams) -> PyResult<DirectDescriptor> {
+    check_picture(&params.hog, goal)?;
+    DirectDescriptor::new(&goal.to_frame(), params).map_err(|error| value_error("goal", &error))
 }

@@ -1,7 +1,5 @@
 //! The tasks behind the environments of `prf.envs`
 
-use std::sync::{Mutex, MutexGuard, TryLockError};
-
 use numpy::ndarray::Dimension;
 use numpy::{
     Element, PyArray, PyArray1, PyArray3, PyArray4, PyArrayMethods, PyReadonlyArray, PyReadonlyArray1,
@@ -9,7 +7,7 @@ use numpy::{
 };
 use prf_core::{DescriptorParams, Error as CoreError, Frame};
 use prf_envs::{Command, Error, Results, RewardConfig, Spec, StateConfig, TaskConfig, VectorTask, WindowConfig};
-use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use serde::Deserialize;
@@ -17,6 +15,7 @@ use serde::de::IntoDeserializer;
 use serde::de::value::Error as ChoiceError;
 
 use crate::error::value_error;
+use crate::exclusive::Exclusive;
 use crate::goal::{GoalParts, goal_parts};
 use crate::limits::{MAX_SIDE, check_tasks};
 use crate::options::Options;
@@ -36,7 +35,7 @@ const MAX_TASKS: usize = 4096;
 #[pyclass(frozen, module = "prf._native")]
 pub(crate) struct Tasks {
     recipe: Recipe,
-    inner: Mutex<Inner>,
+    inner: Exclusive<Inner>,
 }
 
 /// The arguments that give the same tasks again.
@@ -74,7 +73,7 @@ impl Tasks {
             threads: options.get_optional("threads")?,
         };
         options.finish()?;
-        let inner = Mutex::new(Inner {
+        let inner = Exclusive::new(Inner {
             tasks: recipe.tasks()?,
             commands: Vec::with_capacity(recipe.num_envs),
             canvas: Frame::new(1, 1),
@@ -85,13 +84,13 @@ impl Tasks {
     /// tuple of str: What the actions are called.
     #[getter]
     fn actions(&self) -> PyResult<&'static [&'static str]> {
-        Ok(self.lock()?.tasks.spec().actions)
+        Ok(self.inner.lock()?.tasks.spec().actions)
     }
 
     /// tuple of int: Height and width of an observation.
     #[getter]
     fn shape(&self) -> PyResult<(usize, usize)> {
-        let Spec { width, height, .. } = *self.lock()?.tasks.spec();
+        let Spec { width, height, .. } = *self.inner.lock()?.tasks.spec();
         Ok((height, width))
     }
 
@@ -112,7 +111,7 @@ impl Tasks {
     ) -> PyResult<()> {
         let count = self.recipe.num_envs;
         let (mask, seeds) = (input("mask", mask, count)?, input("seeds", seeds, count)?);
-        let mut inner = self.lock()?;
+        let mut inner = self.inner.lock()?;
         let mut observations = output("observations", observations, &inner.observation_shape(count))?;
         inner.commands.clear();
         inner.commands.extend(mask.as_slice()?.iter().zip(seeds.as_slice()?).map(|(&begins, &seed)| match begins {
@@ -176,7 +175,7 @@ impl Tasks {
         let (actions, seeds) = (input("actions", actions, count)?, input("seeds", seeds, count)?);
         let restart = restart.map(|restart| input("restart", restart, count)).transpose()?;
         let restart = restart.as_ref().map(PyReadonlyArray::as_slice).transpose()?;
-        let mut inner = self.lock()?;
+        let mut inner = self.inner.lock()?;
         let known = inner.tasks.spec().actions.len();
         inner.commands.clear();
         for (index, (&action, &seed)) in actions.as_slice()?.iter().zip(seeds.as_slice()?).enumerate() {
@@ -210,7 +209,7 @@ impl Tasks {
         let [height, width] = [1, 2].map(|axis| frames.shape()[axis].clamp(1, MAX_SIDE));
         let mut frames = output("frames", frames, &[self.recipe.num_envs, height, width, 3])?;
         let frames = frames.as_slice_mut()?;
-        let mut inner = self.lock()?;
+        let mut inner = self.inner.lock()?;
         let Inner { tasks, canvas, .. } = &mut *inner;
         py.detach(|| {
             if [canvas.height(), canvas.width()] != [height, width] {
@@ -238,28 +237,16 @@ impl Tasks {
     }
 
     fn __getstate__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        let inner = self.lock()?;
+        let inner = self.inner.lock()?;
         Ok(PyBytes::new(py, &inner.tasks.save_state()))
     }
 
     fn __setstate__(&self, state: &[u8]) -> PyResult<()> {
-        self.lock()?.tasks.load_state(state).map_err(|error| PyValueError::new_err(format!("state: {error}")))
+        self.inner.lock()?.tasks.load_state(state).map_err(|error| PyValueError::new_err(format!("state: {error}")))
     }
 }
 
 impl Tasks {
-    /// No lock is waited for: a thread that was not taken along when a process forked never gives its back.
-    fn lock(&self) -> PyResult<MutexGuard<'_, Inner>> {
-        match self.inner.try_lock() {
-            Ok(guard) => Ok(guard),
-            Err(TryLockError::Poisoned(poisoned)) => Ok(poisoned.into_inner()),
-            Err(TryLockError::WouldBlock) => {
-                let message = "this environment is in use by another thread; give each thread one of its own";
-                Err(PyRuntimeError::new_err(message))
-            }
-        }
-    }
-
     /// The action of task `index`, if there is such an action.
     fn action(&self, py: Python<'_>, index: usize, action: i64, known: usize) -> PyResult<usize> {
         match usize::try_from(action) {

@@ -19,30 +19,52 @@ from typing import TYPE_CHECKING
 from prf._extras import has_gymnasium
 from prf._native import (
     DirectGoal,
+    EmaState,
     Goal,
     MotionGoal,
+    MotionTemplate,
     WindowGoal,
     __version__,
+    crop,
+    crop_box,
+    crop_box_batch,
     distance,
+    distance_batch,
     hog,
+    hog_batch,
+    match_template,
+    match_template_batch,
+    motion_template,
     preset_goal,
     reward,
+    reward_batch,
 )
 from prf._results import Match, Rect, Score
 
 __all__ = [
     "DirectGoal",
+    "EmaState",
     "Goal",
     "Match",
     "MotionGoal",
+    "MotionTemplate",
     "Rect",
     "Score",
     "WindowGoal",
     "__version__",
+    "crop",
+    "crop_box",
+    "crop_box_batch",
     "distance",
+    "distance_batch",
     "hog",
+    "hog_batch",
+    "match_template",
+    "match_template_batch",
+    "motion_template",
     "preset_goal",
     "reward",
+    "reward_batch",
 ]
 
 if has_gymnasium():

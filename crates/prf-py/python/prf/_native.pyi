@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from typing_extensions import Self, disjoint_base
 
-from prf._results import Score
+from prf._results import Rect, Score
 
 _Norm: TypeAlias = Literal["none", "l1", "l1-sqrt", "l2", "l2-hys"]
 _Scale: TypeAlias = Literal["none", "sqrt-blocks", "sqrt-features"]
@@ -16,20 +16,34 @@ _PictureOrPath: TypeAlias = NDArray[np.uint8] | str | PathLike[str]
 
 __all__ = [
     "DirectGoal",
+    "EmaState",
     "Goal",
     "MotionGoal",
+    "MotionTemplate",
     "Tasks",
     "WindowGoal",
     "__version__",
+    "crop",
+    "crop_box",
+    "crop_box_batch",
     "distance",
+    "distance_batch",
     "hog",
+    "hog_batch",
+    "match_template",
+    "match_template_batch",
+    "motion_template",
     "preset_goal",
     "preset_limit_steps",
     "reward",
+    "reward_batch",
 ]
 
 __version__: str
 
+def crop(image: _Picture) -> _Picture: ...
+def crop_box(image: _Picture) -> Rect: ...
+def crop_box_batch(images: _Picture, *, threads: int | None = None) -> NDArray[np.int64]: ...
 def hog(
     image: NDArray[np.uint8] | NDArray[np.float32] | NDArray[np.float64],
     *,
@@ -41,6 +55,43 @@ def hog(
     norm: _Norm = "l2",
     feature_vector: bool = True,
 ) -> NDArray[np.float32]: ...
+def hog_batch(
+    images: NDArray[np.uint8] | NDArray[np.float32] | NDArray[np.float64],
+    *,
+    orientations: int = 9,
+    signed: bool = False,
+    cell: float | None = None,
+    cell_px: int | None = None,
+    block_cells: int = 1,
+    norm: _Norm = "l2",
+    feature_vector: bool = True,
+    threads: int | None = None,
+) -> NDArray[np.float32]: ...
+def match_template(
+    image: _Picture,
+    template: _Picture,
+    *,
+    mask: _Picture | NDArray[np.bool_] | None = None,
+    method: _Method = "ccoeff-normed",
+) -> NDArray[np.float32]: ...
+def match_template_batch(
+    images: _Picture,
+    template: _Picture,
+    *,
+    mask: _Picture | NDArray[np.bool_] | None = None,
+    method: _Method = "ccoeff-normed",
+    threads: int | None = None,
+) -> NDArray[np.float32]: ...
+def motion_template(
+    frames: _Picture,
+    *,
+    threshold: int = 30,
+    tau_start: float = 0.1,
+    tau_step: float = 0.4,
+    delta_divisor: float | None = None,
+    duration: float | None = None,
+    skip_still: bool = False,
+) -> _Picture: ...
 def reward(
     goal: _Picture,
     frame: _Picture,
@@ -53,6 +104,19 @@ def reward(
     norm: _Norm = "l2",
     scale: _Scale = "sqrt-blocks",
 ) -> float: ...
+def reward_batch(
+    goal: _Picture,
+    frames: _Picture,
+    *,
+    orientations: int = 9,
+    signed: bool = False,
+    cell: float | None = None,
+    cell_px: int | None = None,
+    block_cells: int = 1,
+    norm: _Norm = "l2",
+    scale: _Scale = "sqrt-blocks",
+    threads: int | None = None,
+) -> NDArray[np.float32]: ...
 def distance(
     goal: _Picture,
     frame: _Picture,
@@ -65,6 +129,19 @@ def distance(
     norm: _Norm = "l2",
     scale: _Scale = "sqrt-blocks",
 ) -> float: ...
+def distance_batch(
+    goal: _Picture,
+    frames: _Picture,
+    *,
+    orientations: int = 9,
+    signed: bool = False,
+    cell: float | None = None,
+    cell_px: int | None = None,
+    block_cells: int = 1,
+    norm: _Norm = "l2",
+    scale: _Scale = "sqrt-blocks",
+    threads: int | None = None,
+) -> NDArray[np.float32]: ...
 
 @disjoint_base
 class Goal:
@@ -199,3 +276,49 @@ class Tasks:
     def __getnewargs_ex__(self) -> tuple[tuple[str], dict[str, Any]]: ...
     def __getstate__(self) -> bytes: ...
     def __setstate__(self, state: bytes) -> None: ...
+@final
+class MotionTemplate:
+    def __new__(
+        cls,
+        *,
+        threshold: int = 30,
+        tau_start: float = 0.1,
+        tau_step: float = 0.4,
+        delta_divisor: float | None = None,
+        duration: float | None = None,
+        skip_still: bool = False,
+    ) -> Self: ...
+    @property
+    def template(self) -> _Picture: ...
+    @property
+    def energy(self) -> _Picture: ...
+    @property
+    def history(self) -> NDArray[np.float32]: ...
+    @property
+    def tau(self) -> float: ...
+    @property
+    def iterations(self) -> int: ...
+    @property
+    def has_motion(self) -> bool: ...
+    def update(self, frame: _Picture) -> _Picture: ...
+    def reset(self) -> None: ...
+    def copy(self) -> Self: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[()], dict[str, Any]]: ...
+    def __getstate__(self) -> bytes: ...
+    def __setstate__(self, state: bytes) -> None: ...
+
+@final
+class EmaState:
+    def __new__(cls, decay: float = 0.7) -> Self: ...
+    @property
+    def decay(self) -> float: ...
+    @property
+    def state(self) -> _Picture: ...
+    @property
+    def values(self) -> NDArray[np.float32]: ...
+    def update(self, frame: _Picture) -> _Picture: ...
+    def reset(self) -> None: ...
+    def copy(self) -> Self: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[()], dict[str, Any]]: ...
+    def __getstate__(self) -> NDArray[np.float32]: ...
+    def __setstate__(self, values: NDArray[np.float32]) -> None: ...

@@ -5,9 +5,10 @@ use prf_core::{DeltaSchedule, DescriptorKind, DescriptorParams, MotionParams, Wi
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use super::parts::{GoalParts, array, name_of};
+use super::parts::GoalParts;
 use super::{Goal, source};
 use crate::options::Options;
+use crate::values::{name_of, picture};
 
 /// The whole frame is to look like a picture.
 ///
@@ -122,7 +123,7 @@ impl WindowGoal {
     #[getter]
     fn mask<'py>(slf: &Bound<'py, WindowGoal>) -> PyResult<Option<Bound<'py, PyArray2<u8>>>> {
         let mask = &slf.as_super().get().parts.goal.mask;
-        mask.as_ref().map(|mask| array(slf.py(), mask.view())).transpose()
+        mask.as_ref().map(|mask| picture(slf.py(), mask.view())).transpose()
     }
 
     /// str: The correlation by which the window is found.

@@ -6,22 +6,20 @@ mod source;
 mod watcher;
 
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, ToPyArray};
-use prf_core::{
-    CellSize, DescriptorParams, Error, FrameView, Match, Score, TaskDescriptor, crop_box, draw_explanation,
-};
+use prf_core::{CellSize, DescriptorParams, Error, FrameView, Match, Score, TaskDescriptor, draw_explanation};
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict};
+use pyo3::types::{PyBytes, PyDict, PyTuple};
 
 pub(crate) use self::classes::{DirectGoal, MotionGoal, WindowGoal};
 pub(crate) use self::parts::GoalParts;
-use self::parts::{array, decimal, name_of};
 use self::watcher::Watcher;
 use crate::batch::{self, Threads};
 use crate::error::value_error;
 use crate::image::{Picture, Pictures};
-use crate::limits::{check_crops, check_features};
+use crate::limits::{check_crops, check_picture};
 use crate::options::Options;
 use crate::results;
+use crate::values::{decimal, name_of, picture, repr};
 
 /// A finished task, shown by a picture or a movement: scores how near frames are to it.
 ///
@@ -55,7 +53,7 @@ impl Goal {
         let shape = [picture.height(), picture.width()];
         match parts.descriptor {
             DescriptorParams::Window(_) => check_crops(&parts.params.hog, shape)?,
-            _ => parts.check_picture(picture)?,
+            _ => check_picture(&parts.params.hog, picture)?,
         }
         let watcher = Watcher::new(&parts)?;
         Ok(Goal { parts, watcher })
@@ -63,12 +61,13 @@ impl Goal {
 
     /// Refuses frames whose features would take too much memory.
     fn check(&self, frames: &[FrameView<'_>]) -> PyResult<()> {
+        let hog = &self.parts.params.hog;
         match self.parts.descriptor {
-            DescriptorParams::Direct => frames.iter().try_for_each(|frame| self.parts.check_picture(*frame)),
+            DescriptorParams::Direct => frames.iter().try_for_each(|frame| check_picture(hog, *frame)),
             // What is compared is no larger than the goal.
             DescriptorParams::Window(_) => Ok(()),
             DescriptorParams::Motion(_) => {
-                frames.iter().try_for_each(|frame| check_crops(&self.parts.params.hog, [frame.height(), frame.width()]))
+                frames.iter().try_for_each(|frame| check_crops(hog, [frame.height(), frame.width()]))
             }
         }
     }
@@ -90,17 +89,6 @@ impl Goal {
             descriptor.load_state(&state).map_err(|error| value_error("state", &error))?;
         }
         Ok(descriptor)
-    }
-}
-
-impl GoalParts {
-    /// Refuses a picture, compared with what is not black in it, that would have too many features.
-    fn check_picture(&self, picture: FrameView<'_>) -> PyResult<()> {
-        let hog = &self.params.hog;
-        check_crops(hog, [picture.height(), picture.width()]).or_else(|_| {
-            let crop = crop_box(picture);
-            check_features(hog, [crop.height, crop.width])
-        })
     }
 }
 
@@ -267,8 +255,8 @@ impl Goal {
         slf.py().import("copy")?.call_method1("copy", (slf,))
     }
 
-    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<((Bound<'py, PyArray2<u8>>,), Bound<'py, PyDict>)> {
-        Ok(((self.goal(py)?,), self.parts.options(py)?))
+    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
+        Ok((PyTuple::new(py, [self.goal(py)?])?, self.parts.options(py)?))
     }
 
     fn __getstate__<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyBytes>>> {
@@ -282,19 +270,14 @@ impl Goal {
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
         let picture = self.parts.goal.picture.view();
-        let mut words = vec![format!("<{}x{} px>", picture.width(), picture.height())];
-        for (name, value) in self.parts.options(py)? {
-            let is_mask = value.is_instance_of::<numpy::PyUntypedArray>();
-            let value = if is_mask { words[0].clone() } else { value.repr()?.to_string() };
-            words.push(format!("{name}={value}"));
-        }
-        Ok(format!("{}({})", self.parts.class(), words.join(", ")))
+        let size = format!("<{}x{} px>", picture.width(), picture.height());
+        repr(self.parts.class(), Some(size), &self.parts.options(py)?)
     }
 
     /// (H, W) ndarray of uint8: what is compared with frames, in grey; of a motion goal its template.
     #[getter]
     fn goal<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u8>>> {
-        array(py, self.parts.goal.picture.view())
+        picture(py, self.parts.goal.picture.view())
     }
 
     /// int: Bins of a histogram.

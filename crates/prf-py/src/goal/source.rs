@@ -3,7 +3,6 @@
 use std::ffi::CString;
 use std::path::PathBuf;
 
-use numpy::ndarray::Ix2;
 use numpy::{PyUntypedArray, PyUntypedArrayMethods};
 use prf_core::io::{self, FrameSource, MotionSequence};
 use prf_core::{Error, Frame, MotionParams};
@@ -11,8 +10,8 @@ use pyo3::exceptions::{PyTypeError, PyUserWarning};
 use pyo3::prelude::*;
 use pyo3::types::PyString;
 
-use crate::error::{file_error, in_python, value_error};
-use crate::image::{Array, Picture, Pictures, untyped};
+use crate::error::{file_error, in_python};
+use crate::image::{self, Picture, Pictures};
 
 const PICTURE: &str = "(height, width)";
 
@@ -24,16 +23,9 @@ pub(crate) fn picture(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Frame> {
     }
 }
 
-/// A mask: a picture, or an array of bools.
+/// The mask that the argument `mask` is or that lies at its path.
 pub(crate) fn mask(value: &Bound<'_, PyAny>) -> PyResult<Frame> {
-    if value.is_instance_of::<PyUntypedArray>()
-        && let Some(bools) = Array::<bool, Ix2>::of("mask", untyped::<Ix2>("mask", value)?)?
-    {
-        let [height, width] = bools.shape();
-        let pixels = bools.pixels()?.iter().map(|&counts| u8::from(counts)).collect();
-        return Frame::from_vec(width, height, pixels).map_err(|error| value_error("mask", &error));
-    }
-    picture("mask", value)
+    if value.is_instance_of::<PyUntypedArray>() { image::mask(value) } else { picture("mask", value) }
 }
 
 /// The motion template that the argument `goal` is or shows, or what lies at its path.
