@@ -10,6 +10,7 @@ mod ema;
 mod error;
 mod exclusive;
 mod goal;
+mod grey;
 mod hog;
 mod image;
 mod limits;
@@ -33,6 +34,8 @@ mod _native {
     use super::ema::EmaState;
     #[pymodule_export]
     use super::goal::{DirectGoal, Goal, MotionGoal, WindowGoal};
+    #[pymodule_export]
+    use super::grey::to_grey;
     #[pymodule_export]
     use super::hog::{hog, hog_batch};
     #[pymodule_export]

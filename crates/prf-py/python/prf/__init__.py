@@ -38,6 +38,7 @@ from prf._native import (
     preset_goal,
     reward,
     reward_batch,
+    to_grey,
 )
 from prf._results import Match, Rect, Score
 
@@ -65,6 +66,7 @@ __all__ = [
     "preset_goal",
     "reward",
     "reward_batch",
+    "to_grey",
 ]
 
 if has_gymnasium():

@@ -37,6 +37,7 @@ __all__ = [
     "preset_limit_steps",
     "reward",
     "reward_batch",
+    "to_grey",
 ]
 
 __version__: str
@@ -242,6 +243,7 @@ class MotionGoal(Goal):
 
 def preset_goal(name: str, goal: _PictureOrPath | None = None) -> DirectGoal | WindowGoal | MotionGoal: ...
 def preset_limit_steps(name: str) -> int: ...
+def to_grey(image: _Picture, *, size: tuple[int, int] | None = None) -> _Picture: ...
 @final
 class Tasks:
     def __new__(

@@ -75,7 +75,8 @@ class WorldEnv(gym.Env[Observation, Action]):
         """Height and width of rendered frames."""
         self._tasks = make_tasks(world, 1, reward, goal, state, max_episode_steps)
         self.observation_space = spaces.Box(0, 255, self._tasks.shape, np.uint8)
-        self.action_space = spaces.Discrete(len(self._tasks.actions))
+        self._actions = len(self._tasks.actions)
+        self.action_space = spaces.Discrete(self._actions)
         self._has_begun = False
         self._is_closed = False
         self._window: Window | None = None
@@ -126,7 +127,7 @@ class WorldEnv(gym.Env[Observation, Action]):
         self._show()
         return observation, rewards.item(), terminated.item(), truncated.item(), {"score": scores.item()}
 
-    def render(self) -> NDArray[np.uint8] | None:  # type: ignore[override]
+    def render(self) -> NDArray[np.uint8] | None:
         """A frame of shape ``(height, width, 3)``; or None where a window shows it or there is no render mode."""
         if self.render_mode is None:
             gym.logger.warn("render() without a render mode: make the environment with render_mode='rgb_array'")
@@ -152,8 +153,8 @@ class WorldEnv(gym.Env[Observation, Action]):
         except TypeError:
             got = f"{type(action).__name__} {action!r}"
             raise TypeError(f"action: got {got}, expected an integer") from None
-        if not 0 <= index < self.action_space.n:
-            raise InvalidAction(f"action: got {index}, expected 0 to {self.action_space.n - 1}")
+        if not 0 <= index < self._actions:
+            raise InvalidAction(f"action: got {index}, expected 0 to {self._actions - 1}")
         return index
 
     def _check_open(self) -> None:

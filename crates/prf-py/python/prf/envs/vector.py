@@ -94,7 +94,7 @@ class WorldVectorEnv(VectorEnv[Observations, Actions, NDArray[Any]]):
         """What the actions are called, in their order."""
         return tuple(self._tasks.actions)
 
-    @property
+    @property  # type: ignore[misc]
     def np_random(self) -> tuple[np.random.Generator, ...]:  # type: ignore[override]
         """The environments' generators, which draw episodes where no seed is given."""
         return tuple(generator for generator, _ in self._random)
@@ -157,7 +157,7 @@ class WorldVectorEnv(VectorEnv[Observations, Actions, NDArray[Any]]):
         numbers = self._read_actions(actions)
         restart = self._restart
         if restart is not None:
-            for index in np.flatnonzero(restart):
+            for index in np.flatnonzero(restart).tolist():
                 self._choose_episode(index, None)
         observations = self._observations()
         rewards, scores = np.empty(self.num_envs), np.empty(self.num_envs)
@@ -173,12 +173,12 @@ class WorldVectorEnv(VectorEnv[Observations, Actions, NDArray[Any]]):
         elif ends and self._mode is AutoresetMode.SAME_STEP:
             over = terminated | truncated
             infos = score_info(scores, ~over) | final_info(observations, scores, over)
-            for index in np.flatnonzero(over):
+            for index in np.flatnonzero(over).tolist():
                 self._choose_episode(index, None)
             observations = self._begin(over)
         return observations, rewards, terminated, truncated, infos
 
-    def render(self) -> tuple[NDArray[np.uint8], ...] | None:  # type: ignore[override]
+    def render(self) -> tuple[NDArray[np.uint8], ...] | None:
         """A frame of shape ``(height, width, 3)`` of each environment; or None where there is no render mode."""
         if self.render_mode is None:
             logger.warn("render() without a render mode: make the environments with render_mode='rgb_array'")
