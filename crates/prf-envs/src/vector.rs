@@ -241,7 +241,7 @@ fn run(lanes: &mut [Lane], commands: &[Command], results: Results<'_>) -> Result
     let pictures = observations.chunks_exact_mut(observations.len() / lanes.len());
     for (index, ((lane, &command), picture)) in lanes.iter_mut().zip(commands).zip(pictures).enumerate() {
         (rewards[index], scores[index], terminated[index], truncated[index]) = lane.run(command)?;
-        picture.copy_from_slice(lane.task.observation());
+        lane.task.observation_into(picture);
     }
     Ok(())
 }

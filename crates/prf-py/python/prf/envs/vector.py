@@ -84,6 +84,7 @@ class WorldVectorEnv(VectorEnv[Observations, Actions, NDArray[Any]]):
         self.single_action_space = spaces.Discrete(len(self._tasks.actions))
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.action_space = batch_space(self.single_action_space, num_envs)
+        self._all = np.ones(num_envs, np.bool_)
         self._random = [seeding.np_random(None) for _ in range(num_envs)]
         # The episodes that begin next, and the environments where one does so in the next step.
         self._seeds = np.zeros(num_envs, np.uint64)
@@ -166,8 +167,7 @@ class WorldVectorEnv(VectorEnv[Observations, Actions, NDArray[Any]]):
             numbers, restart, self._seeds, observations, rewards, scores, terminated, truncated
         )
         self._restart = None
-        played = np.ones(self.num_envs, np.bool_) if restart is None else ~restart
-        infos = score_info(scores, played)
+        infos = {"score": scores, "_score": self._all.copy()} if restart is None else score_info(scores, ~restart)
         if ends and self._mode is AutoresetMode.NEXT_STEP:
             self._restart = terminated | truncated
         elif ends and self._mode is AutoresetMode.SAME_STEP:
@@ -220,7 +220,7 @@ class WorldVectorEnv(VectorEnv[Observations, Actions, NDArray[Any]]):
 
     def _read_mask(self, options: dict[str, Any] | None) -> NDArray[np.bool_]:
         if options is None or "reset_mask" not in options:
-            return np.ones(self.num_envs, np.bool_)
+            return self._all
         mask = options["reset_mask"]
         expected = f"expected an array of {self.num_envs} bools"
         if not isinstance(mask, np.ndarray):
