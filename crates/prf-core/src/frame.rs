@@ -98,6 +98,62 @@ impl Frame {
     pub fn view(&self) -> FrameView<'_> {
         FrameView { width: self.width, height: self.height, pixels: &self.pixels }
     }
+
+    /// The picture, borrowed to be drawn on.
+    pub fn view_mut(&mut self) -> FrameMut<'_> {
+        FrameMut { width: self.width, height: self.height, pixels: &mut self.pixels }
+    }
+}
+
+/// A grey picture to be drawn on, whose pixels are borrowed: `height` rows of `width` bytes with no gap between them.
+#[derive(Debug)]
+pub struct FrameMut<'a> {
+    width: usize,
+    height: usize,
+    pixels: &'a mut [u8],
+}
+
+impl<'a> FrameMut<'a> {
+    /// A view of these pixels, row by row from the top.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Shape`] when a side is 0 or `pixels` doesn't hold `width * height` values.
+    pub fn new(width: usize, height: usize, pixels: &'a mut [u8]) -> Result<FrameMut<'a>, Error> {
+        check_shape(width, height, pixels.len())?;
+        Ok(FrameMut { width, height, pixels })
+    }
+
+    /// Width in pixels.
+    #[must_use]
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// Height in pixels.
+    #[must_use]
+    pub fn height(&self) -> usize {
+        self.height
+    }
+
+    /// All pixels, row by row from the top.
+    pub fn as_mut_slice(&mut self) -> &mut [u8] {
+        self.pixels
+    }
+
+    /// Row `y`, counted from the top.
+    ///
+    /// # Panics
+    ///
+    /// When there is no such row.
+    pub fn row_mut(&mut self, y: usize) -> &mut [u8] {
+        &mut self.pixels[y * self.width..][..self.width]
+    }
+
+    /// Gives every pixel the same value.
+    pub fn fill(&mut self, value: u8) {
+        self.pixels.fill(value);
+    }
 }
 
 /// A grey picture whose pixels are borrowed: `height` rows of `width` bytes with no gap between them.

@@ -25,7 +25,7 @@
 //! | Step | Item |
 //! |---|---|
 //! | colour to grey | [`luma`] |
-//! | grey pictures | [`Frame`], [`FrameView`] (bytes); [`Plane`], [`PlaneView`] (floats) |
+//! | grey pictures | [`Frame`], [`FrameView`], [`FrameMut`] (bytes); [`Plane`], [`PlaneView`] (floats) |
 //! | box around what is not black | [`crop_box`] |
 //! | bring both templates to one size | [`Resizer`] |
 //! | histograms of oriented gradients | [`Hog`], [`HogParams`], [`HogLayout`] |
@@ -77,7 +77,7 @@ pub use evidence::{
 };
 #[cfg(feature = "explain")]
 pub use explain::{Picture, Ranked, draw_explanation, draw_ranking};
-pub use frame::{Frame, FrameView};
+pub use frame::{Frame, FrameMut, FrameView};
 pub use goal_check::{GoalWarning, check_goal};
 pub use hog::{CellSize, Hog, HogLayout, HogParams, Norm};
 pub use matching::{Match, MatchMethod, TemplateMatcher};

@@ -1,6 +1,6 @@
 //! Filling smooth shapes: how much of each pixel lies inside an outline.
 
-use prf_core::Frame;
+use prf_core::FrameMut;
 
 /// Fills outlines. Its memory is kept from one to the next.
 ///
@@ -17,7 +17,7 @@ pub(crate) struct Coverage {
 impl Coverage {
     /// Fills the inside of a closed outline, `[x, y]` in pixels of the frame, with `grey`; pixels on its edge get as much of it as they are
     /// covered. What lies outside the frame is cut off. Outlines go round once, in either direction.
-    pub(crate) fn fill(&mut self, frame: &mut Frame, outline: &[[f32; 2]], grey: u8) {
+    pub(crate) fn fill(&mut self, frame: &mut FrameMut<'_>, outline: &[[f32; 2]], grey: u8) {
         if !self.begin(frame, outline) {
             return;
         }
@@ -30,7 +30,7 @@ impl Coverage {
     }
 
     /// Prepares the outline's box; `false` if nothing of it is inside the frame.
-    fn begin(&mut self, frame: &Frame, outline: &[[f32; 2]]) -> bool {
+    fn begin(&mut self, frame: &FrameMut<'_>, outline: &[[f32; 2]]) -> bool {
         let range = |axis: usize, side: usize| {
             let values = || outline.iter().map(|point| point[axis]);
             let first = values().fold(f32::INFINITY, f32::min).floor().clamp(0.0, side as f32);
@@ -64,7 +64,7 @@ impl Coverage {
         }
     }
 
-    fn blend(&self, frame: &mut Frame, grey: u8) {
+    fn blend(&self, frame: &mut FrameMut<'_>, grey: u8) {
         let [left, top, width, _] = self.area;
         let grey = f32::from(grey);
         for (y, changes) in self.changes.chunks_exact(width + 1).enumerate() {
@@ -126,12 +126,14 @@ fn add_to_row(changes: &mut [f32], left: f32, right: f32, share: f32) {
 
 #[cfg(test)]
 mod tests {
+    use prf_core::Frame;
+
     use super::*;
     use crate::rng::{stream, unit_f32};
 
     fn filled(outline: &[[f32; 2]], width: usize, height: usize) -> Frame {
         let mut frame = Frame::new(width, height);
-        Coverage::default().fill(&mut frame, outline, 255);
+        Coverage::default().fill(&mut frame.view_mut(), outline, 255);
         frame
     }
 

@@ -1,6 +1,6 @@
 //! What every world is.
 
-use prf_core::{Frame, Label};
+use prf_core::{Frame, FrameMut, Label};
 
 use crate::Error;
 
@@ -69,7 +69,12 @@ pub trait Environment: Send {
     fn step(&mut self, action: usize) -> Result<Step, Error>;
 
     /// Draws the world over the whole `frame`, scaled to the frame's own size. Before the first reset it is black.
-    fn draw_into(&self, frame: &mut Frame);
+    fn draw(&self, frame: &mut FrameMut<'_>);
+
+    /// [`draw`](Environment::draw)s over a frame that owns its pixels.
+    fn draw_into(&self, frame: &mut Frame) {
+        self.draw(&mut frame.view_mut());
+    }
 
     /// Everything that decides how the episode goes on, as bytes for [`load_state`](Environment::load_state).
     fn save_state(&self) -> Vec<u8>;

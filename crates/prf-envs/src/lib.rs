@@ -28,6 +28,7 @@ pub mod registry;
 pub mod rng;
 pub mod survey;
 mod task;
+mod vector;
 
 pub use controls::{Controls, Pace};
 pub use env::{Environment, Spec, Status, Step};
@@ -35,3 +36,4 @@ pub use error::Error;
 pub use task::{
     EnvConfig, RewardConfig, RewardSource, StateConfig, StateKind, Task, TaskConfig, TaskStep, WindowConfig,
 };
+pub use vector::{Command, Results, VectorTask};

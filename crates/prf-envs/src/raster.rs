@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use prf_core::{Frame, Rect};
+use prf_core::{FrameMut, Rect};
 
 /// Fills `rect`, given in a world of `world` = (width, height) units, in a frame of any size.
 ///
@@ -11,11 +11,30 @@ use prf_core::{Frame, Rect};
 /// rectangle too thin to hold a pixel's centre still fills the pixel, or the two, at its own centre.
 ///
 /// What lies outside the frame is cut off; an empty rectangle fills nothing.
-pub fn fill_rect(frame: &mut Frame, world: (usize, usize), rect: Rect, value: u8) {
+pub fn fill_rect(frame: &mut FrameMut<'_>, world: (usize, usize), rect: Rect, value: u8) {
     let columns = covered(rect.x, rect.width, world.0, frame.width());
     let rows = covered(rect.y, rect.height, world.1, frame.height());
     for y in rows {
-        frame.row_mut(y)[columns.clone()].fill(value);
+        fill(&mut frame.row_mut(y)[columns.clone()], value);
+    }
+}
+
+/// Fills a few pixels faster than a call to the system's `memset`, which is made for many.
+fn fill(pixels: &mut [u8], value: u8) {
+    const AT_ONCE: usize = 8;
+    let len = pixels.len();
+    match len {
+        AT_ONCE..=16 => {
+            // These may overlap.
+            pixels[..AT_ONCE].copy_from_slice(&[value; AT_ONCE]);
+            pixels[len - AT_ONCE..].copy_from_slice(&[value; AT_ONCE]);
+        }
+        0..AT_ONCE => {
+            for pixel in pixels {
+                *pixel = value;
+            }
+        }
+        _ => pixels.fill(value),
     }
 }
 
@@ -44,6 +63,8 @@ pub fn covered(start: usize, len: usize, units: usize, pixels: usize) -> Range<u
 
 #[cfg(test)]
 mod tests {
+    use prf_core::Frame;
+
     use super::*;
 
     #[test]
@@ -84,7 +105,7 @@ mod tests {
         assert_eq!(covered(90, 10, 84, 42), 0..0);
         assert_eq!(covered(5, 0, 84, 42), 0..0);
         let mut frame = Frame::new(4, 2);
-        fill_rect(&mut frame, (4, 2), Rect { x: 3, y: 1, width: 9, height: usize::MAX }, 7);
+        fill_rect(&mut frame.view_mut(), (4, 2), Rect { x: 3, y: 1, width: 9, height: usize::MAX }, 7);
         assert_eq!(frame.as_slice(), [0, 0, 0, 0, 0, 0, 0, 7]);
     }
 }

@@ -1,6 +1,6 @@
 //! The conformance suite finds worlds that break their promises.
 
-use prf_core::Frame;
+use prf_core::FrameMut;
 use prf_envs::breakout::Breakout;
 use prf_envs::{Environment, Error, Spec, Status, Step, check};
 
@@ -51,9 +51,9 @@ impl Environment for Flawed {
         }
     }
 
-    fn draw_into(&self, frame: &mut Frame) {
-        let old = frame.as_slice()[0];
-        self.inner.draw_into(frame);
+    fn draw(&self, frame: &mut FrameMut<'_>) {
+        let old = frame.as_mut_slice()[0];
+        self.inner.draw(frame);
         if self.flaw == Flaw::KeepsOldPicture {
             frame.as_mut_slice()[0] = old;
         }

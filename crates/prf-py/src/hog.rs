@@ -1,14 +1,16 @@
 //! `prf.hog`
 
-use numpy::{IntoPyArray, PyArrayDyn, prelude::*};
+use numpy::ndarray::{Ix2, Ix3};
+use numpy::{Element, IntoPyArray, PyArrayDyn, prelude::*};
 use prf_core::{Error, FrameView, Hog, HogLayout, HogParams, PlaneView};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
-use crate::arg::Arg;
+use crate::batch::{self, Threads};
 use crate::error::value_error;
-use crate::image::{Image, Pixels};
+use crate::image::{Array, Image};
 use crate::limits::check_features;
-use crate::options::HogOptions;
+use crate::options::Options;
 
 /// Histograms of oriented gradients of a grey picture.
 ///
@@ -59,50 +61,154 @@ use crate::options::HogOptions;
 /// (2, 2, 1, 1, 4)
 #[pyfunction]
 #[pyo3(
-    signature = (
-        image, *, orientations=Arg::of(9), signed=Arg::of(false), cell=None, cell_px=None, block_cells=Arg::of(1),
-        norm=Arg::of("l2".into()), feature_vector=Arg::of(true)
-    ),
-    text_signature = "(image, *, orientations=9, signed=False, cell=None, cell_px=None, block_cells=1, \
-                      norm='l2', feature_vector=True)"
+    signature = (image, **options),
+    text_signature = "(image, *, orientations=9, signed=False, cell=None, cell_px=None, block_cells=1, norm='l2', \
+                      feature_vector=True)"
 )]
-#[expect(clippy::too_many_arguments, reason = "keyword arguments in Python")]
 pub(crate) fn hog<'py>(
     image: &Bound<'py, PyAny>,
-    orientations: Arg<usize>,
-    signed: Arg<bool>,
-    cell: Option<Arg<f32>>,
-    cell_px: Option<Arg<usize>>,
-    block_cells: Arg<usize>,
-    norm: Arg<String>,
-    feature_vector: Arg<bool>,
+    options: Option<Bound<'py, PyDict>>,
 ) -> PyResult<Bound<'py, PyArrayDyn<f32>>> {
-    let params = HogOptions { orientations, signed, cell, cell_px, block_cells, norm }.params()?;
-    let feature_vector = feature_vector.get("feature_vector")?;
-    let py = image.py();
-    let image = Image::read("image", image)?;
-    let (shape, pixels) = (image.shape(), image.pixels()?);
-    check_features(&params, shape)?;
-    let (features, layout) =
-        py.detach(|| compute(params, shape, pixels)).map_err(|error| value_error("image", &error))?;
-    let features = features.into_pyarray(py);
-    if feature_vector {
-        return Ok(features.to_dyn().clone());
+    let options = Options::new("hog", options);
+    let params = options.hog(HogParams::default().cell)?;
+    let feature_vector = options.get("feature_vector")?.unwrap_or(true);
+    options.finish()?;
+    match Image::<Ix2>::read("image", image)? {
+        Image::Bytes(image) => one(&image, params, feature_vector),
+        Image::Floats(image) => one(&image, params, feature_vector),
+        Image::Doubles(image) => one(&image, params, feature_vector),
     }
-    let ([rows, columns], block) = (layout.blocks(), layout.block_cells());
-    Ok(features.reshape([rows, columns, block, block, layout.orientations()])?.to_dyn().clone())
 }
 
-fn compute(params: HogParams, [height, width]: [usize; 2], pixels: Pixels<'_>) -> Result<(Vec<f32>, HogLayout), Error> {
-    let mut hog = Hog::new(params)?;
-    let mut features = Vec::new();
-    let layout = match pixels {
-        Pixels::Bytes(bytes) => hog.compute_bytes_into(FrameView::new(width, height, bytes)?, &mut features),
-        Pixels::Floats(floats) => hog.compute_into(PlaneView::new(width, height, floats)?, &mut features),
-        Pixels::Doubles(doubles) => {
-            let floats: Vec<f32> = doubles.iter().map(|&v| v as f32).collect();
-            hog.compute_into(PlaneView::new(width, height, &floats)?, &mut features)
-        }
-    }?;
-    Ok((features, layout))
+/// :func:`hog` of many pictures, on several threads.
+///
+/// Parameters
+/// ----------
+/// images : (N, H, W) ndarray of uint8, float32 or float64
+///     Grey pictures, as for :func:`hog`. N may be 0.
+/// orientations, signed, cell, cell_px, block_cells, norm, feature_vector
+///     As for :func:`hog`.
+/// threads : int, 1 to 1024, optional
+///     The most threads; as many as there are cores where it isn't given. The result is the same.
+///
+/// Returns
+/// -------
+/// ndarray of float32
+///     What :func:`hog` gives for each, of shape ``(N, features)`` or
+///     ``(N, rows, columns, block_cells, block_cells, orientations)``.
+///
+/// Raises
+/// ------
+/// TypeError, ValueError
+///     As :func:`hog`.
+/// MemoryError
+///     There is no room for the result.
+///
+/// Examples
+/// --------
+/// >>> import numpy as np
+/// >>> import prf
+/// >>> prf.hog_batch(np.zeros((100, 84, 84), np.uint8), cell_px=8).shape
+/// (100, 900)
+#[pyfunction]
+#[pyo3(
+    signature = (images, **options),
+    text_signature = "(images, *, orientations=9, signed=False, cell=None, cell_px=None, block_cells=1, norm='l2', \
+                      feature_vector=True, threads=None)"
+)]
+pub(crate) fn hog_batch<'py>(
+    images: &Bound<'py, PyAny>,
+    options: Option<Bound<'py, PyDict>>,
+) -> PyResult<Bound<'py, PyArrayDyn<f32>>> {
+    let options = Options::new("hog_batch", options);
+    let params = options.hog(HogParams::default().cell)?;
+    let feature_vector = options.get("feature_vector")?.unwrap_or(true);
+    let threads = Threads::read(&options)?;
+    options.finish()?;
+    match Image::<Ix3>::read("images", images)? {
+        Image::Bytes(images) => many(&images, params, feature_vector, threads),
+        Image::Floats(images) => many(&images, params, feature_vector, threads),
+        Image::Doubles(images) => many(&images, params, feature_vector, threads),
+    }
+}
+
+fn one<'py, P: Pixel>(
+    image: &Array<'py, P, Ix2>,
+    params: HogParams,
+    feature_vector: bool,
+) -> PyResult<Bound<'py, PyArrayDyn<f32>>> {
+    let (py, shape, pixels) = (image.py(), image.shape(), image.pixels()?);
+    let (layout, mut worker) = prepare("image", params, shape)?;
+    py.detach(|| P::compute(&mut worker, shape, pixels)).map_err(|error| value_error("image", &error))?;
+    let features = worker.features.into_pyarray(py);
+    features.reshape(lengths(&layout, feature_vector))
+}
+
+fn many<'py, P: Pixel>(
+    images: &Array<'py, P, Ix3>,
+    params: HogParams,
+    feature_vector: bool,
+    threads: Threads,
+) -> PyResult<Bound<'py, PyArrayDyn<f32>>> {
+    let shape = images.shape();
+    let (layout, worker) = prepare("images", params, shape)?;
+    let lengths = lengths(&layout, feature_vector);
+    batch::each("images", images, threads, worker, &lengths, |worker, pixels, features| {
+        P::compute(worker, shape, pixels)?;
+        features.copy_from_slice(&worker.features);
+        Ok(())
+    })
+}
+
+fn prepare(name: &str, params: HogParams, shape: [usize; 2]) -> PyResult<(HogLayout, Worker)> {
+    check_features(&params, shape)?;
+    let layout = HogLayout::new(&params, shape[1], shape[0]).map_err(|error| value_error(name, &error))?;
+    let hog = Hog::new(params).map_err(|error| value_error(name, &error))?;
+    Ok((layout, Worker { hog, floats: Vec::new(), features: Vec::new() }))
+}
+
+/// The shape of one picture's features.
+fn lengths(layout: &HogLayout, feature_vector: bool) -> Vec<usize> {
+    if feature_vector {
+        return vec![layout.len()];
+    }
+    let ([rows, columns], block) = (layout.blocks(), layout.block_cells());
+    vec![rows, columns, block, block, layout.orientations()]
+}
+
+/// What one thread computes with.
+#[derive(Clone)]
+struct Worker {
+    hog: Hog,
+    floats: Vec<f32>,
+    features: Vec<f32>,
+}
+
+/// What pictures may consist of.
+trait Pixel: Element {
+    /// Leaves the features of a picture in the worker.
+    fn compute(worker: &mut Worker, shape: [usize; 2], pixels: &[Self]) -> Result<(), Error>;
+}
+
+impl Pixel for u8 {
+    fn compute(worker: &mut Worker, [height, width]: [usize; 2], pixels: &[u8]) -> Result<(), Error> {
+        worker.hog.compute_bytes_into(FrameView::new(width, height, pixels)?, &mut worker.features)?;
+        Ok(())
+    }
+}
+
+impl Pixel for f32 {
+    fn compute(worker: &mut Worker, [height, width]: [usize; 2], pixels: &[f32]) -> Result<(), Error> {
+        worker.hog.compute_into(PlaneView::new(width, height, pixels)?, &mut worker.features)?;
+        Ok(())
+    }
+}
+
+impl Pixel for f64 {
+    fn compute(worker: &mut Worker, [height, width]: [usize; 2], pixels: &[f64]) -> Result<(), Error> {
+        worker.floats.clear();
+        worker.floats.extend(pixels.iter().map(|&v| v as f32));
+        worker.hog.compute_into(PlaneView::new(width, height, &worker.floats)?, &mut worker.features)?;
+        Ok(())
+    }
 }

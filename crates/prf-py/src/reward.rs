@@ -1,13 +1,15 @@
 //! `prf.reward` and `prf.distance`
 
-use prf_core::{DirectDescriptor, FrameView, RewardParams, Score, TaskDescriptor, crop_box};
+use numpy::PyArray1;
+use prf_core::{DescriptorKind, DirectDescriptor, FrameView, RewardParams, Score, TaskDescriptor};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
-use crate::arg::Arg;
+use crate::batch::{self, Threads};
 use crate::error::value_error;
-use crate::image::Array;
-use crate::limits::check_features;
-use crate::options::{HogOptions, choice};
+use crate::image::{Picture, Pictures};
+use crate::limits::check_picture;
+use crate::options::Options;
 
 /// How much a frame looks like the goal: ``exp(-distance(goal, frame, ...))``.
 ///
@@ -32,27 +34,16 @@ use crate::options::{HogOptions, choice};
 /// True
 #[pyfunction]
 #[pyo3(
-    signature = (
-        goal, frame, *, orientations=Arg::of(9), signed=Arg::of(false), cell=None, cell_px=None,
-        block_cells=Arg::of(1), norm=Arg::of("l2".into()), scale=Arg::of("sqrt-blocks".into())
-    ),
+    signature = (goal, frame, **options),
     text_signature = "(goal, frame, *, orientations=9, signed=False, cell=None, cell_px=None, block_cells=1, \
                       norm='l2', scale='sqrt-blocks')"
 )]
-#[expect(clippy::too_many_arguments, reason = "keyword arguments in Python")]
 pub(crate) fn reward(
     goal: &Bound<'_, PyAny>,
     frame: &Bound<'_, PyAny>,
-    orientations: Arg<usize>,
-    signed: Arg<bool>,
-    cell: Option<Arg<f32>>,
-    cell_px: Option<Arg<usize>>,
-    block_cells: Arg<usize>,
-    norm: Arg<String>,
-    scale: Arg<String>,
+    options: Option<Bound<'_, PyDict>>,
 ) -> PyResult<f32> {
-    let hog = HogOptions { orientations, signed, cell, cell_px, block_cells, norm };
-    Ok(score(goal, frame, hog, scale)?.reward)
+    Ok(score(goal, frame, Options::new("reward", options))?.reward)
 }
 
 /// Distance between the HOGs of a goal and a frame.
@@ -96,50 +87,127 @@ pub(crate) fn reward(
 /// 0.0
 #[pyfunction]
 #[pyo3(
-    signature = (
-        goal, frame, *, orientations=Arg::of(9), signed=Arg::of(false), cell=None, cell_px=None,
-        block_cells=Arg::of(1), norm=Arg::of("l2".into()), scale=Arg::of("sqrt-blocks".into())
-    ),
+    signature = (goal, frame, **options),
     text_signature = "(goal, frame, *, orientations=9, signed=False, cell=None, cell_px=None, block_cells=1, \
                       norm='l2', scale='sqrt-blocks')"
 )]
-#[expect(clippy::too_many_arguments, reason = "keyword arguments in Python")]
 pub(crate) fn distance(
     goal: &Bound<'_, PyAny>,
     frame: &Bound<'_, PyAny>,
-    orientations: Arg<usize>,
-    signed: Arg<bool>,
-    cell: Option<Arg<f32>>,
-    cell_px: Option<Arg<usize>>,
-    block_cells: Arg<usize>,
-    norm: Arg<String>,
-    scale: Arg<String>,
+    options: Option<Bound<'_, PyDict>>,
 ) -> PyResult<f32> {
-    let hog = HogOptions { orientations, signed, cell, cell_px, block_cells, norm };
-    Ok(score(goal, frame, hog, scale)?.distance)
+    Ok(score(goal, frame, Options::new("distance", options))?.distance)
 }
 
-fn score(goal: &Bound<'_, PyAny>, frame: &Bound<'_, PyAny>, hog: HogOptions, scale: Arg<String>) -> PyResult<Score> {
-    let params = RewardParams { hog: hog.params()?, scale: choice("scale", scale)? };
-    let py = goal.py();
-    let (goal, frame) = (Array::read("goal", goal)?, Array::read("frame", frame)?);
-    let goal = view("goal", &goal)?;
-    let frame = view("frame", &frame)?;
-    py.detach(|| compare(goal, frame, params))
+/// :func:`reward` of many frames and one goal, on several threads.
+///
+/// :meth:`DirectGoal.rewards` is the same for a goal that is used more than once.
+///
+/// Parameters
+/// ----------
+/// goal : (H, W) ndarray of uint8
+///     What the finished task looks like, in grey.
+/// frames : (N, h, w) ndarray of uint8
+///     What is compared with it. N may be 0.
+/// orientations, signed, cell, cell_px, block_cells, norm, scale
+///     As for :func:`distance`.
+/// threads : int, 1 to 1024, optional
+///     The most threads; as many as there are cores where it isn't given. The result is the same.
+///
+/// Returns
+/// -------
+/// (N,) ndarray of float32
+///     What :func:`reward` gives for each.
+///
+/// Raises
+/// ------
+/// TypeError, ValueError
+///     As :func:`distance`.
+#[pyfunction]
+#[pyo3(
+    signature = (goal, frames, **options),
+    text_signature = "(goal, frames, *, orientations=9, signed=False, cell=None, cell_px=None, block_cells=1, \
+                      norm='l2', scale='sqrt-blocks', threads=None)"
+)]
+pub(crate) fn reward_batch<'py>(
+    goal: &Bound<'py, PyAny>,
+    frames: &Bound<'py, PyAny>,
+    options: Option<Bound<'py, PyDict>>,
+) -> PyResult<Bound<'py, PyArray1<f32>>> {
+    scores(goal, frames, Options::new("reward_batch", options), |score| score.reward)
 }
 
-fn view<'a>(name: &str, array: &'a Array<'_, u8>) -> PyResult<FrameView<'a>> {
-    let [height, width] = array.shape();
-    FrameView::new(width, height, array.pixels()?).map_err(|error| value_error(name, &error))
+/// :func:`distance` of many frames and one goal, on several threads.
+///
+/// Parameters
+/// ----------
+/// goal : (H, W) ndarray of uint8
+///     What the finished task looks like, in grey.
+/// frames : (N, h, w) ndarray of uint8
+///     What is compared with it. N may be 0.
+/// orientations, signed, cell, cell_px, block_cells, norm, scale
+///     As for :func:`distance`.
+/// threads : int, 1 to 1024, optional
+///     The most threads; as many as there are cores where it isn't given. The result is the same.
+///
+/// Returns
+/// -------
+/// (N,) ndarray of float32
+///     What :func:`distance` gives for each.
+///
+/// Raises
+/// ------
+/// TypeError, ValueError
+///     As :func:`distance`.
+#[pyfunction]
+#[pyo3(
+    signature = (goal, frames, **options),
+    text_signature = "(goal, frames, *, orientations=9, signed=False, cell=None, cell_px=None, block_cells=1, \
+                      norm='l2', scale='sqrt-blocks', threads=None)"
+)]
+pub(crate) fn distance_batch<'py>(
+    goal: &Bound<'py, PyAny>,
+    frames: &Bound<'py, PyAny>,
+    options: Option<Bound<'py, PyDict>>,
+) -> PyResult<Bound<'py, PyArray1<f32>>> {
+    scores(goal, frames, Options::new("distance_batch", options), |score| score.distance)
 }
 
-fn compare(goal: FrameView<'_>, frame: FrameView<'_>, params: RewardParams) -> PyResult<Score> {
-    let goal = goal.to_frame();
-    // The common size is one of the two crops', so checking both is checking it.
-    for picture in [goal.view(), frame] {
-        let crop = crop_box(picture);
-        check_features(&params.hog, [crop.height, crop.width])?;
-    }
-    let mut descriptor = DirectDescriptor::new(&goal, params).map_err(|error| value_error("goal", &error))?;
-    descriptor.observe(frame).map_err(|error| value_error("frame", &error))
+fn score(goal: &Bound<'_, PyAny>, frame: &Bound<'_, PyAny>, options: Options<'_>) -> PyResult<Score> {
+    let params = options.reward(DescriptorKind::Direct.paper_cell())?;
+    options.finish()?;
+    let py = frame.py();
+    let (goal, frame) = (Picture::read("goal", goal)?, Picture::read("frame", frame)?);
+    let (goal, frame) = (goal.view()?, frame.view()?);
+    py.detach(|| {
+        check_picture(&params.hog, frame)?;
+        let mut descriptor = descriptor(goal, params)?;
+        descriptor.observe(frame).map_err(|error| value_error("frame", &error))
+    })
+}
+
+fn scores<'py>(
+    goal: &Bound<'py, PyAny>,
+    frames: &Bound<'py, PyAny>,
+    options: Options<'py>,
+    value: impl Fn(Score) -> f32 + Sync,
+) -> PyResult<Bound<'py, PyArray1<f32>>> {
+    let params = options.reward(DescriptorKind::Direct.paper_cell())?;
+    let threads = Threads::read(&options)?;
+    options.finish()?;
+    let (goal, frames) = (Picture::read("goal", goal)?, Pictures::read("frames", frames)?);
+    let (goal, views, [height, width]) = (goal.view()?, frames.views()?, frames.shape());
+    let descriptor = frames.py().detach(|| {
+        views.into_iter().try_for_each(|frame| check_picture(&params.hog, frame))?;
+        descriptor(goal, params)
+    })?;
+    batch::each("frames", &frames, threads, descriptor, &[], |descriptor, pixels, values| {
+        values[0] = value(descriptor.observe(FrameView::new(width, height, pixels)?)?);
+        Ok(())
+    })
+}
+
+fn descriptor(goal: FrameView<'_>, params: RewardParams) -> PyResult<DirectDescriptor> {
+    check_picture(&params.hog, goal)?;
+    DirectDescriptor::new(&goal.to_frame(), params).map_err(|error| value_error("goal", &error))
 }

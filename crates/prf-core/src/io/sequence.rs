@@ -75,6 +75,33 @@ impl MotionSequence {
         }
         reading.finish(frame).map_err(|problem| sequence_error(source.path(), problem))
     }
+
+    /// Makes the motion template of frames in memory; errors call them `name`.
+    ///
+    /// ```
+    /// use prf_core::{FrameView, MotionParams, io::MotionSequence};
+    /// let frames = [[255, 0, 0], [0, 255, 0], [0, 0, 255]];
+    /// let views = frames.iter().map(|pixels| FrameView::new(3, 1, pixels)).collect::<Result<Vec<_>, _>>()?;
+    /// let sequence = MotionSequence::of_frames("goal", views, MotionParams::default())?;
+    /// assert_eq!(sequence.template.as_slice(), [51, 255, 255]);
+    /// # Ok::<(), prf_core::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// As [`MotionSequence::of`].
+    pub fn of_frames<'a>(
+        name: &str,
+        frames: impl IntoIterator<Item = FrameView<'a>>,
+        params: MotionParams,
+    ) -> Result<MotionSequence, Error> {
+        let name = Path::new(name);
+        let mut reading = Reading::new(params)?;
+        for frame in frames {
+            reading.take(name, frame)?;
+        }
+        reading.finish(Frame::new(1, 1)).map_err(|problem| sequence_error(name, problem))
+    }
 }
 
 /// A sequence of which some frames have been read.

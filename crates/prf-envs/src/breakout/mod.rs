@@ -11,7 +11,7 @@ mod state;
 #[cfg(test)]
 mod tests;
 
-use prf_core::Frame;
+use prf_core::FrameMut;
 
 use self::physics::{Ball, Field, Outcome, PADDLE_MAX_X, PADDLE_SPEED, SIDE_SPEEDS, Wall};
 use crate::rng::{below, stream};
@@ -73,6 +73,8 @@ impl Breakout {
             limit_steps,
             chance: true,
         };
+        // Drawn now, no step has to wait for it.
+        draw::whole_wall();
         Ok(Breakout { spec, game: None })
     }
 }
@@ -97,10 +99,10 @@ impl Environment for Breakout {
         Ok(game.step(action, self.spec.limit_steps))
     }
 
-    fn draw_into(&self, frame: &mut Frame) {
-        frame.fill(0);
-        if let Some(game) = &self.game {
-            draw::draw(game, frame);
+    fn draw(&self, frame: &mut FrameMut<'_>) {
+        match &self.game {
+            Some(game) => draw::draw(game, frame),
+            None => frame.fill(0),
         }
     }
 

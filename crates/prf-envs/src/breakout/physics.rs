@@ -51,6 +51,16 @@ impl Wall {
         Wall::BRICKS - self.0.count_ones()
     }
 
+    /// Column and row of each brick that was removed.
+    pub(super) fn missing(self) -> impl Iterator<Item = (i32, i32)> {
+        let mut bits = Wall::FULL.0 & !self.0;
+        std::iter::from_fn(move || {
+            let index = (bits != 0).then(|| bits.trailing_zeros() as i32)?;
+            bits &= bits - 1;
+            Some((index % COLUMNS, index / COLUMNS))
+        })
+    }
+
     pub(super) fn is_cleared(self) -> bool {
         self.0 == 0
     }

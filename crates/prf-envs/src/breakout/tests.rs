@@ -1,5 +1,6 @@
 //! Cases worked out by hand, and what must hold whatever is played.
 
+use prf_core::Frame;
 use proptest::prelude::*;
 
 use super::physics::{Landing, touches};
@@ -184,7 +185,7 @@ fn bounces_draw_every_speed_equally_often() {
 fn the_picture_at_its_own_size_is_exact() {
     let mut frame = Frame::new(84, 84);
     let game = Game { paddle: 20, field: field(40, 50, 1, 1), ..Game::launch(0) };
-    draw::draw(&game, &mut frame);
+    draw::draw(&game, &mut frame.view_mut());
     let ascii = |y: usize| frame.row(y).iter().map(|grey| char::from(b'.' + u8::from(*grey > 0))).collect::<String>();
     let bricks = ["//////.".repeat(6), ".//////".repeat(6)].concat();
     assert_eq!((ascii(7), ascii(8), ascii(12)), (".".repeat(84), bricks.clone(), ".".repeat(84)));
@@ -200,13 +201,17 @@ fn the_picture_at_its_own_size_is_exact() {
 
 #[test]
 fn a_multiple_of_the_size_repeats_each_pixel() {
-    let game = Game::launch(3);
-    let (mut small, mut large) = (Frame::new(84, 84), Frame::new(84 * 3, 84 * 2));
-    draw::draw(&game, &mut small);
-    draw::draw(&game, &mut large);
-    for y in 0..large.height() {
-        let wide: Vec<_> = small.row(y / 2).iter().flat_map(|&grey| [grey; 3]).collect();
-        assert_eq!(large.row(y), wide, "row {y}");
+    // The whole wall, one with a few bricks missing, and one with most of them.
+    for wall in [Wall::FULL, Wall(Wall::FULL.0 & !0x8021), Wall(0x8021)] {
+        let launch = Game::launch(3);
+        let game = Game { field: Field { wall, ..launch.field }, ..launch };
+        let (mut small, mut large) = (Frame::new(84, 84), Frame::new(84 * 3, 84 * 2));
+        draw::draw(&game, &mut small.view_mut());
+        draw::draw(&game, &mut large.view_mut());
+        for y in 0..large.height() {
+            let wide: Vec<_> = small.row(y / 2).iter().flat_map(|&grey| [grey; 3]).collect();
+            assert_eq!(large.row(y), wide, "row {y}");
+        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Flappy Bird's picture.
 
-use prf_core::{Frame, Rect};
+use prf_core::{FrameMut, Rect};
 
 use super::physics::{BIRD_HEIGHT, BIRD_WIDTH, BIRD_X, FIELD, Flight, GAP, LIP_HEIGHT, PIPE_WIDTH, Pipes};
 use crate::raster::fill_rect;
@@ -11,11 +11,10 @@ const BIRD_GREY: u8 = 220;
 const EYE_GREY: u8 = 255;
 const BEAK_GREY: u8 = 180;
 
-/// Draws the pipes in sight and the bird on a black `frame`.
-pub(super) fn draw(flight: &Flight, frame: &mut Frame) {
-    // One pair that has just gone by can still be seen.
-    let first = flight.passed().saturating_sub(1);
-    for pipes in (first..).map(|number| flight.pipes(number)).take_while(|pipes| pipes.x <= FIELD) {
+/// Draws the pipes in sight and the bird over the whole `frame`.
+pub(super) fn draw(flight: &Flight, frame: &mut FrameMut<'_>) {
+    frame.fill(0);
+    for pipes in (flight.first_in_sight()..).map(|number| flight.pipes(number)).take_while(|pipes| pipes.x <= FIELD) {
         draw_pipes(pipes, frame);
     }
     let top = flight.bird.top();
@@ -24,7 +23,7 @@ pub(super) fn draw(flight: &Flight, frame: &mut Frame) {
     fill(frame, (BIRD_X + 5, top + 3), (2, 2), BEAK_GREY);
 }
 
-fn draw_pipes(Pipes { x, gap }: Pipes, frame: &mut Frame) {
+fn draw_pipes(Pipes { x, gap }: Pipes, frame: &mut FrameMut<'_>) {
     let below = gap + GAP;
     fill(frame, (x, 0), (PIPE_WIDTH, gap), PIPE_GREY);
     fill(frame, (x, below), (PIPE_WIDTH, FIELD - below), PIPE_GREY);
@@ -34,7 +33,7 @@ fn draw_pipes(Pipes { x, gap }: Pipes, frame: &mut Frame) {
 }
 
 /// What lies left of the field is cut off here, what lies right of it by [`fill_rect`].
-fn fill(frame: &mut Frame, (x, y): (i32, i32), (width, height): (i32, i32), grey: u8) {
+fn fill(frame: &mut FrameMut<'_>, (x, y): (i32, i32), (width, height): (i32, i32), grey: u8) {
     let width = (width + x.min(0)).max(0) as usize;
     let side = FIELD as usize;
     fill_rect(frame, (side, side), Rect { x: x.max(0) as usize, y: y as usize, width, height: height as usize }, grey);

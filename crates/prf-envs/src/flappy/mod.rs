@@ -9,7 +9,7 @@ mod state;
 #[cfg(test)]
 mod tests;
 
-use prf_core::{Frame, Label};
+use prf_core::{FrameMut, Label};
 
 use self::physics::{Bird, Flight};
 use crate::{Environment, Error, Spec, Status, Step};
@@ -66,7 +66,7 @@ impl Environment for Flappy {
     }
 
     fn reset(&mut self, seed: u64) {
-        let flight = Flight { seed, distance: 0, bird: Bird::start(seed) };
+        let flight = Flight::new(seed, 0, Bird::start(seed));
         self.game = Some(Game { flight, steps: 0, status: Status::Running });
     }
 
@@ -81,10 +81,10 @@ impl Environment for Flappy {
         Ok(game.step(action == FLAP, self.spec.limit_steps))
     }
 
-    fn draw_into(&self, frame: &mut Frame) {
-        frame.fill(0);
-        if let Some(game) = &self.game {
-            draw::draw(&game.flight, frame);
+    fn draw(&self, frame: &mut FrameMut<'_>) {
+        match &self.game {
+            Some(game) => draw::draw(&game.flight, frame),
+            None => frame.fill(0),
         }
     }
 

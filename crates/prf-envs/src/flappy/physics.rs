@@ -95,20 +95,65 @@ pub(super) struct Flight {
     /// Pixels flown.
     pub(super) distance: u32,
     pub(super) bird: Bird,
+    gaps: Gaps,
+}
+
+/// The gaps of the pairs in sight, so that they are drawn from their streams once.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Gaps {
+    /// Number of the first pair.
+    first: u32,
+    /// First rows of the gaps.
+    rows: [i32; IN_SIGHT],
+}
+
+/// One pair that has just gone by, one that comes next, and one behind it.
+const IN_SIGHT: usize = 3;
+
+impl Gaps {
+    fn of(seed: u64, first: u32) -> Gaps {
+        Gaps { first, rows: std::array::from_fn(|index| gap(seed, first + index as u32)) }
+    }
+}
+
+/// The first row of the gap of a pair. Every pair has a stream of its own, so a state needs no list of them.
+fn gap(seed: u64, number: u32) -> i32 {
+    let mut rng = stream(seed, "flappy-pipes", u64::from(number));
+    let room = FIELD - GAP - 2 * PIPE_LEAST;
+    PIPE_LEAST + below(&mut rng, room as usize + 1) as i32
 }
 
 impl Flight {
+    pub(super) fn new(seed: u64, distance: u32, bird: Bird) -> Flight {
+        let mut flight = Flight { seed, distance, bird, gaps: Gaps::of(seed, 0) };
+        flight.look_ahead();
+        flight
+    }
+
     pub(super) fn step(&mut self, flaps: bool) {
         self.bird.step(flaps);
         self.distance += SPEED as u32;
+        self.look_ahead();
     }
 
-    /// The pair of this number, from 0. Every pair has a stream of its own, so a state needs no list of them.
+    fn look_ahead(&mut self) {
+        let first = self.first_in_sight();
+        if first != self.gaps.first {
+            self.gaps = Gaps::of(self.seed, first);
+        }
+    }
+
+    /// The pair of this number, from 0.
     pub(super) fn pipes(&self, number: u32) -> Pipes {
         let x = FIRST_X + number as i32 * SPACING - self.distance as i32;
-        let mut rng = stream(self.seed, "flappy-pipes", u64::from(number));
-        let room = FIELD - GAP - 2 * PIPE_LEAST;
-        Pipes { x, gap: PIPE_LEAST + below(&mut rng, room as usize + 1) as i32 }
+        let index = number.wrapping_sub(self.gaps.first) as usize;
+        let gap = self.gaps.rows.get(index).copied().unwrap_or_else(|| gap(self.seed, number));
+        Pipes { x, gap }
+    }
+
+    /// The number of the first pair that can still be seen: the one that has just gone by.
+    pub(super) fn first_in_sight(&self) -> u32 {
+        self.passed().saturating_sub(1)
     }
 
     /// How many pairs the bird has left behind.

@@ -2,7 +2,7 @@ use super::physics::{BIRD_HEIGHT, BIRD_WIDTH, BIRD_X, Bird, FIRST_X, Flight, GAP
 use super::*;
 
 fn flight(distance: u32, y: i32) -> Flight {
-    Flight { seed: 5, distance, bird: Bird { y: y * PARTS, speed: 0 } }
+    Flight::new(5, distance, Bird { y: y * PARTS, speed: 0 })
 }
 
 #[test]

@@ -1,11 +1,12 @@
 //! The face's picture.
 
-use std::collections::HashMap;
+use std::ops::Range;
+use std::sync::LazyLock;
 
-use prf_core::{Frame, Rect};
+use prf_core::{Frame, FrameMut, Rect};
 
 use super::curve;
-use super::face::{FIELD, Face, Point};
+use super::face::{BROW_MOVEMENTS, FIELD, Face, MOUTH_MOVEMENTS, Point};
 use crate::coverage::Coverage;
 
 const SHELL: u8 = 186;
@@ -31,56 +32,56 @@ const EYE: Point = [27.0, 37.0];
 /// Half the thickness of a brow at each of its vertices, from the outer end to the inner one.
 const BROW_HALF: [f32; 4] = [0.5, 1.7, 2.0, 1.5];
 
-/// About as much memory is for the patches of brows, and as much for those of mouths; when it is full, all of a kind are forgotten.
-const MAX_PATCH_BYTES: usize = 1 << 20;
+/// Draws `face` over the whole `frame`.
+pub(super) fn draw(face: Face, frame: &mut FrameMut<'_>) {
+    let mut brush = Brush::new(frame.width(), frame.height());
+    frame.fill(0);
+    draw_portrait(&mut brush, frame);
+    draw_brows(&mut brush, face, frame);
+    draw_mouth(&mut brush, face, frame);
+}
 
-/// Draws faces. What never moves is kept for the next frame of the same size, and so is each position of the brows and of the mouth: there
-/// are a few hundred of them.
-#[derive(Clone, Debug)]
-pub(super) struct Painter {
+/// All faces at the mirror frame's size: what never moves, and each position of the brows and of the mouth. There are a few hundred of
+/// them, so a face is not drawn but put together.
+#[derive(Debug)]
+pub(super) struct Album {
     portrait: Frame,
-    brows: HashMap<[i8; 3], Patch>,
-    mouths: HashMap<[i8; 3], Patch>,
-    brush: Brush,
+    brows: Vec<Patch>,
+    mouths: Vec<Patch>,
 }
 
-impl Default for Painter {
-    fn default() -> Painter {
-        Painter::of_size(1, 1)
+impl Album {
+    /// The one for all worlds, which is made with the first of them.
+    pub(super) fn get() -> &'static Album {
+        static ALBUM: LazyLock<Album> = LazyLock::new(Album::new);
+        &ALBUM
     }
-}
 
-impl Painter {
-    fn of_size(width: usize, height: usize) -> Painter {
-        let mut painter = Painter {
-            portrait: Frame::new(width, height),
-            brows: HashMap::new(),
-            mouths: HashMap::new(),
-            brush: Brush::new(width, height),
+    fn new() -> Album {
+        let side = FIELD as usize;
+        let (mut portrait, mut brush) = (Frame::new(side, side), Brush::new(side, side));
+        draw_portrait(&mut brush, &mut portrait.view_mut());
+        let mut patches = |movements: Range<usize>, draw: Draw| {
+            let faces = Face::all(movements);
+            faces.map(|face| Patch::new(&portrait, |frame| draw(&mut brush, face, frame))).collect()
         };
-        draw_portrait(&mut painter.brush, &mut painter.portrait);
-        painter
+        let (brows, mouths) = (patches(BROW_MOVEMENTS, draw_brows), patches(MOUTH_MOVEMENTS, draw_mouth));
+        Album { portrait, brows, mouths }
     }
 
-    /// Draws `face` over the whole `frame`.
-    pub(super) fn paint(&mut self, face: Face, frame: &mut Frame) {
-        if [self.portrait.width(), self.portrait.height()] != [frame.width(), frame.height()] {
-            *self = Painter::of_size(frame.width(), frame.height());
+    /// Draws `face` over the whole `frame`, if this has the mirror frame's size.
+    pub(super) fn draw(&self, face: Face, frame: &mut FrameMut<'_>) -> bool {
+        if [frame.width(), frame.height()] != [self.portrait.width(), self.portrait.height()] {
+            return false;
         }
-        let Painter { portrait, brows, mouths, brush } = self;
-        frame.as_mut_slice().copy_from_slice(portrait.as_slice());
-        let [a, b, c, d, e, f] = face.levels();
-        for (patches, levels, draw) in [(brows, [a, b, c], draw_brows as Draw), (mouths, [d, e, f], draw_mouth)] {
-            if !patches.contains_key(&levels) && patches.values().map(Patch::bytes).sum::<usize>() > MAX_PATCH_BYTES {
-                patches.clear();
-            }
-            let patch = patches.entry(levels).or_insert_with(|| Patch::new(brush, face, portrait, draw));
-            patch.lay_on(frame);
-        }
+        frame.as_mut_slice().copy_from_slice(self.portrait.as_slice());
+        self.brows[face.position(BROW_MOVEMENTS)].lay_on(frame);
+        self.mouths[face.position(MOUTH_MOVEMENTS)].lay_on(frame);
+        true
     }
 }
 
-type Draw = fn(&mut Brush, Face, &mut Frame);
+type Draw = fn(&mut Brush, Face, &mut FrameMut<'_>);
 
 /// The part of a picture that differs from the portrait.
 #[derive(Clone, Debug)]
@@ -90,9 +91,9 @@ struct Patch {
 }
 
 impl Patch {
-    fn new(brush: &mut Brush, face: Face, portrait: &Frame, draw: Draw) -> Patch {
+    fn new(portrait: &Frame, draw: impl FnOnce(&mut FrameMut<'_>)) -> Patch {
         let mut drawn = portrait.clone();
-        draw(brush, face, &mut drawn);
+        draw(&mut drawn.view_mut());
         let rect = difference(portrait, &drawn);
         let columns = rect.x..rect.x + rect.width;
         let rows = rect.y..rect.y + rect.height;
@@ -100,11 +101,7 @@ impl Patch {
         Patch { rect, pixels }
     }
 
-    fn bytes(&self) -> usize {
-        self.pixels.len()
-    }
-
-    fn lay_on(&self, frame: &mut Frame) {
+    fn lay_on(&self, frame: &mut FrameMut<'_>) {
         let Rect { x, y, width, .. } = self.rect;
         for (row, pixels) in self.pixels.chunks_exact(width.max(1)).enumerate() {
             frame.row_mut(y + row)[x..x + width].copy_from_slice(pixels);
@@ -126,7 +123,7 @@ fn difference(one: &Frame, other: &Frame) -> Rect {
     Rect { x, y, width: columns.1 - x, height: rows.1 - y }
 }
 
-fn draw_brows(brush: &mut Brush, face: Face, frame: &mut Frame) {
+fn draw_brows(brush: &mut Brush, face: Face, frame: &mut FrameMut<'_>) {
     for brow in face.vertices()[..8].chunks_exact(4) {
         let edge = |side: f32| -> [Point; 4] {
             std::array::from_fn(|index| [brow[index][0], brow[index][1] + side * BROW_HALF[index]])
@@ -137,7 +134,7 @@ fn draw_brows(brush: &mut Brush, face: Face, frame: &mut Frame) {
     }
 }
 
-fn draw_mouth(brush: &mut Brush, face: Face, frame: &mut Frame) {
+fn draw_mouth(brush: &mut Brush, face: Face, frame: &mut FrameMut<'_>) {
     for (outline, grey) in face.vertices()[8..].chunks_exact(8).zip([LIPS, MOUTH]) {
         let lower: [Point; 5] = std::array::from_fn(|index| outline[(4 + index) % 8]);
         brush.fill_between(&outline[..5], &lower, frame, grey);
@@ -145,7 +142,7 @@ fn draw_mouth(brush: &mut Brush, face: Face, frame: &mut Frame) {
 }
 
 /// Draws what never moves.
-fn draw_portrait(brush: &mut Brush, frame: &mut Frame) {
+fn draw_portrait(brush: &mut Brush, frame: &mut FrameMut<'_>) {
     let mirrored = |[x, y]: Point| [FIELD - x, y];
     for ear in [[9.5, 41.0], mirrored([9.5, 41.0])] {
         brush.fill_ellipse(ear, [5.5, 9.0], frame, EAR);
@@ -186,7 +183,7 @@ impl Brush {
     }
 
     /// Between an upper curve and a lower one that leads back.
-    fn fill_between(&mut self, upper: &[Point], lower: &[Point], frame: &mut Frame, grey: u8) {
+    fn fill_between(&mut self, upper: &[Point], lower: &[Point], frame: &mut FrameMut<'_>, grey: u8) {
         self.outline.clear();
         curve::through(upper, self.pieces, &mut self.outline);
         self.outline.extend(upper.last());
@@ -195,27 +192,27 @@ impl Brush {
         self.fill(frame, grey);
     }
 
-    fn fill_around(&mut self, points: &[Point], frame: &mut Frame, grey: u8) {
+    fn fill_around(&mut self, points: &[Point], frame: &mut FrameMut<'_>, grey: u8) {
         self.outline.clear();
         curve::around(points, self.pieces, &mut self.outline);
         self.fill(frame, grey);
     }
 
     /// The closed shape of which `half` is the right half, from top to bottom.
-    fn fill_symmetric(&mut self, half: &[Point], frame: &mut Frame, grey: u8) {
+    fn fill_symmetric(&mut self, half: &[Point], frame: &mut FrameMut<'_>, grey: u8) {
         let inner = &half[1..half.len() - 1];
         let left = inner.iter().rev().map(|&[x, y]| [FIELD - x, y]);
         let points: Vec<Point> = half.iter().copied().chain(left).collect();
         self.fill_around(&points, frame, grey);
     }
 
-    fn fill_ellipse(&mut self, centre: Point, radii: Point, frame: &mut Frame, grey: u8) {
+    fn fill_ellipse(&mut self, centre: Point, radii: Point, frame: &mut FrameMut<'_>, grey: u8) {
         self.outline.clear();
         curve::ellipse(centre, radii, 3 * self.pieces, &mut self.outline);
         self.fill(frame, grey);
     }
 
-    fn fill(&mut self, frame: &mut Frame, grey: u8) {
+    fn fill(&mut self, frame: &mut FrameMut<'_>, grey: u8) {
         for point in &mut self.outline {
             *point = [point[0] * self.scale[0], point[1] * self.scale[1]];
         }

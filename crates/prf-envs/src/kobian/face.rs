@@ -1,5 +1,7 @@
 //! Where the face's 24 vertices are: the neutral face, and how each movement shifts it.
 
+use std::ops::Range;
+
 /// Side of the square field that vertices lie in, in pixels of the mirror frame.
 pub(super) const FIELD: f32 = 84.0;
 
@@ -14,6 +16,10 @@ pub const MOVEMENTS: usize = 6;
 
 /// The least and the greatest level of each movement.
 pub(super) const LEVELS: [[i8; 2]; MOVEMENTS] = [[-2, 3], [-2, 2], [-2, 2], [-2, 3], [-2, 3], [0, 5]];
+
+/// The movements of the brows, and those of the mouth.
+pub(super) const BROW_MOVEMENTS: Range<usize> = 0..3;
+pub(super) const MOUTH_MOVEMENTS: Range<usize> = 3..MOVEMENTS;
 
 /// A vertex of the left half: where it is in the neutral face, and what a level of each movement adds.
 struct Row {
@@ -92,6 +98,27 @@ impl Face {
     #[must_use]
     pub fn levels(self) -> [i8; MOVEMENTS] {
         self.levels
+    }
+
+    /// Every face that differs from the neutral one in these movements alone, in the order of [`position`](Face::position).
+    pub(super) fn all(movements: Range<usize>) -> impl Iterator<Item = Face> {
+        let counts = LEVELS.map(|[least, greatest]| (greatest - least + 1) as usize);
+        (0..counts[movements.clone()].iter().product()).map(move |mut position: usize| {
+            let mut levels = [0; MOVEMENTS];
+            for movement in movements.clone().rev() {
+                levels[movement] = LEVELS[movement][0] + (position % counts[movement]) as i8;
+                position /= counts[movement];
+            }
+            Face { levels }
+        })
+    }
+
+    /// Where the levels of these movements stand among all that they can have.
+    pub(super) fn position(self, movements: Range<usize>) -> usize {
+        let levels = self.levels[movements.clone()].iter().zip(&LEVELS[movements]);
+        levels.fold(0, |position, (level, [least, greatest])| {
+            position * (greatest - least + 1) as usize + (level - least) as usize
+        })
     }
 
     /// Takes a movement one level up or down; at its end the face stays as it is.

@@ -9,11 +9,11 @@ mod state;
 #[cfg(test)]
 mod tests;
 
-use std::cell::RefCell;
+use std::sync::LazyLock;
 
-use prf_core::{Frame, Label};
+use prf_core::{FrameMut, Label};
 
-use self::draw::Painter;
+use self::draw::Album;
 pub use self::face::{Displacement, Face, MOVEMENTS, Point, VERTICES};
 use self::face::{FIELD, mean_distance};
 use crate::{Environment, Error, Spec, Status, Step};
@@ -79,30 +79,27 @@ impl Expression {
 pub struct Kobian {
     spec: Spec,
     expression: Expression,
-    target: Target,
+    target: Face,
+    closeness: &'static [f32],
+    album: &'static Album,
     episode: Option<Episode>,
-    painter: RefCell<Painter>,
 }
 
-/// The face to be made, with what a step asks of it.
-#[derive(Clone, Copy, Debug)]
-struct Target {
-    face: Face,
-    vertices: [Point; VERTICES],
-    /// How far from it the neutral face is.
-    neutral_distance: f32,
+/// The variable reward of every face, by its position: 1 at the target, 0 as far from it as the neutral face is, and below 0 beyond. They
+/// are measured once, with the first world, since 24 vertices take longer than a drawing.
+fn closeness(expression: Expression) -> &'static [f32] {
+    static ALL: [LazyLock<Vec<f32>>; 2] = [
+        LazyLock::new(|| closeness_to(Expression::Happy.target())),
+        LazyLock::new(|| closeness_to(Expression::Surprise.target())),
+    ];
+    &ALL[expression as usize]
 }
 
-impl Target {
-    fn of(expression: Expression) -> Target {
-        let face = expression.target();
-        Target { face, vertices: face.vertices(), neutral_distance: Face::default().distance_to(face) }
-    }
-
-    /// The variable reward: 1 at the target, 0 as far from it as the neutral face is, and below 0 beyond.
-    fn closeness(&self, face: Face) -> f32 {
-        1.0 - mean_distance(&face.vertices(), &self.vertices) / self.neutral_distance
-    }
+fn closeness_to(target: Face) -> Vec<f32> {
+    let vertices = target.vertices();
+    let neutral = mean_distance(&Face::default().vertices(), &vertices);
+    let faces = Face::all(0..MOVEMENTS);
+    faces.map(|face| 1.0 - mean_distance(&face.vertices(), &vertices) / neutral).collect()
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -124,7 +121,8 @@ impl Kobian {
         let side = FIELD as usize;
         let spec =
             Spec { name: expression.name(), width: side, height: side, actions: &ACTIONS, limit_steps, chance: false };
-        Ok(Kobian { spec, expression, target: Target::of(expression), episode: None, painter: RefCell::default() })
+        let (target, closeness) = (expression.target(), closeness(expression));
+        Ok(Kobian { spec, expression, target, closeness, album: Album::get(), episode: None })
     }
 
     /// The face now; none before the first episode.
@@ -161,13 +159,14 @@ impl Environment for Kobian {
             episode.status = Status::Truncated;
         }
         let Episode { face, status, .. } = *episode;
-        let score = 0.0 - face.actions_to(self.target.face) as f32;
-        Ok(Step { reward: self.target.closeness(face), score, status })
+        let score = 0.0 - face.actions_to(self.target) as f32;
+        Ok(Step { reward: self.closeness[face.position(0..MOVEMENTS)], score, status })
     }
 
-    fn draw_into(&self, frame: &mut Frame) {
+    fn draw(&self, frame: &mut FrameMut<'_>) {
         match self.episode {
-            Some(episode) => self.painter.borrow_mut().paint(episode.face, frame),
+            Some(Episode { face, .. }) if self.album.draw(face, frame) => {}
+            Some(Episode { face, .. }) => draw::draw(face, frame),
             None => frame.fill(0),
         }
     }
@@ -182,13 +181,13 @@ impl Environment for Kobian {
     }
 
     fn oracle_action(&self) -> usize {
-        let missing = self.face().and_then(|face| oracle::next(face, self.target.face));
+        let missing = self.face().and_then(|face| oracle::next(face, self.target));
         missing.map_or(REST, |(movement, up)| 1 + 2 * movement + usize::from(!up))
     }
 
     /// The score is minus the mean distance of the vertices from the target's, in pixels; a success is to be within one action of it.
     fn label(&self, _: f32) -> Label {
-        let (face, target) = (self.face(), self.target.face);
+        let (face, target) = (self.face(), self.target);
         Label {
             score: face.map(|face| 0.0 - f64::from(face.distance_to(target))),
             success: face.map(|face| face.actions_to(target) <= 1),

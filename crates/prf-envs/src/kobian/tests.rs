@@ -1,5 +1,6 @@
 use super::face::{Face, MOVEMENTS};
 use super::*;
+use prf_core::Frame;
 
 #[test]
 fn vertices_by_hand() {
@@ -13,6 +14,25 @@ fn vertices_by_hand() {
     assert!(near(vertices[12], [84.0 - vertices[8][0], vertices[8][1]]));
     assert_eq!(Face::new([4, 0, 0, 0, 0, 0]), None);
     assert_eq!(Face::new([0, 0, 0, 0, 0, -1]), None);
+}
+
+#[test]
+fn every_face_has_a_position_of_its_own() {
+    assert_eq!(Face::all(0..MOVEMENTS).count(), 6 * 5 * 5 * 6 * 6 * 6);
+    for (position, face) in Face::all(0..MOVEMENTS).enumerate() {
+        assert_eq!(Face::new(face.levels()), Some(face));
+        assert_eq!(face.position(0..MOVEMENTS), position);
+    }
+}
+
+#[test]
+fn the_album_holds_what_would_be_drawn() {
+    let (mut kept, mut drawn) = (Frame::new(84, 84), Frame::new(84, 84));
+    for face in Face::all(0..MOVEMENTS).step_by(61) {
+        assert!(Album::get().draw(face, &mut kept.view_mut()));
+        draw::draw(face, &mut drawn.view_mut());
+        assert_eq!(kept, drawn, "{face:?}");
+    }
 }
 
 #[test]

@@ -3,7 +3,9 @@
 mod config;
 mod state;
 
-use prf_core::{Error as CoreError, Frame, Goal, TaskDescriptor};
+use std::cell::{Cell, OnceCell};
+
+use prf_core::{Error as CoreError, Frame, FrameMut, Goal, TaskDescriptor};
 
 pub use self::config::{EnvConfig, RewardConfig, RewardSource, StateConfig, StateKind, TaskConfig, WindowConfig};
 use self::state::Representation;
@@ -45,8 +47,38 @@ pub struct TaskStep {
 pub struct Task {
     environment: Box<dyn Environment>,
     reward: Reward,
-    mirror: Frame,
+    mirror: Mirror,
     state: Representation,
+}
+
+/// The world's picture, drawn when it is asked for: a state or a reward may need it or not.
+struct Mirror {
+    frame: OnceCell<Frame>,
+    /// An old one, whose memory is kept.
+    spare: Cell<Option<Frame>>,
+}
+
+impl Mirror {
+    fn new() -> Mirror {
+        Mirror { frame: OnceCell::new(), spare: Cell::new(None) }
+    }
+
+    /// What `world` looks like now.
+    fn of(&self, world: &dyn Environment) -> &Frame {
+        self.frame.get_or_init(|| {
+            let &Spec { width, height, .. } = world.spec();
+            let mut frame = self.spare.take().unwrap_or_else(|| Frame::new(width, height));
+            world.draw_into(&mut frame);
+            frame
+        })
+    }
+
+    /// The world has changed.
+    fn forget(&mut self) {
+        if let Some(frame) = self.frame.take() {
+            self.spare.set(Some(frame));
+        }
+    }
 }
 
 enum Reward {
@@ -70,7 +102,7 @@ impl Task {
         Ok(Task {
             environment,
             reward: Reward::new(&config.reward, goal, [height, width])?,
-            mirror: Frame::new(width, height),
+            mirror: Mirror::new(),
             state: Representation::new(config, width, height)?,
         })
     }
@@ -89,7 +121,8 @@ impl Task {
         self.state.reset();
         self.look();
         if let Reward::Perceptual(descriptor) = &mut self.reward {
-            descriptor.pass(self.mirror.view()).expect("a new episode takes frames of any size");
+            let mirror = self.mirror.of(self.environment.as_ref());
+            descriptor.pass(mirror.view()).expect("a new episode takes frames of any size");
         }
     }
 
@@ -102,19 +135,36 @@ impl Task {
         self.look();
         let reward = match &mut self.reward {
             Reward::Variable => step.reward,
-            Reward::Perceptual(descriptor) => descriptor.observe(self.mirror.view())?.reward,
+            Reward::Perceptual(descriptor) => {
+                descriptor.observe(self.mirror.of(self.environment.as_ref()).view())?.reward
+            }
         };
         Ok(TaskStep { reward, score: step.score, status: step.status })
     }
 
     /// What the agent sees now: height × width grey values, row by row. All black before the first reset.
     pub fn observation(&self) -> &[u8] {
-        self.state.observation().unwrap_or(self.mirror.as_slice())
+        self.state.observation().unwrap_or_else(|| self.mirror().as_slice())
+    }
+
+    /// Writes [`observation`](Task::observation) to `pixels`. A picture that nothing else has asked for is drawn there and nowhere else.
+    ///
+    /// # Panics
+    /// If there are more or fewer than height × width of them.
+    pub fn observation_into(&self, pixels: &mut [u8]) {
+        match self.state.observation().or(self.mirror.frame.get().map(Frame::as_slice)) {
+            Some(observation) => pixels.copy_from_slice(observation),
+            None => {
+                let &Spec { width, height, .. } = self.spec();
+                let mut frame = FrameMut::new(width, height, pixels).expect("as many pixels as the world has");
+                self.environment.draw(&mut frame);
+            }
+        }
     }
 
     /// The world's picture now.
     pub fn mirror(&self) -> &Frame {
-        &self.mirror
+        self.mirror.of(self.environment.as_ref())
     }
 
     /// The world.
@@ -144,15 +194,17 @@ impl Task {
         let world = reader.take(world_len)?;
         let state = self.state.restored(&mut reader)?;
         self.reward.load(reader.rest(), || self.environment.load_state(world))?;
-        self.environment.draw_into(&mut self.mirror);
+        self.mirror.forget();
         self.state = state;
         Ok(())
     }
 
-    /// Draws the world and takes the picture in.
+    /// The world has changed: takes its picture in, where the state remembers.
     fn look(&mut self) {
-        self.environment.draw_into(&mut self.mirror);
-        self.state.update(self.mirror.view());
+        self.mirror.forget();
+        if self.state.remembers() {
+            self.state.update(self.mirror.of(self.environment.as_ref()).view());
+        }
     }
 }
 

@@ -52,6 +52,11 @@ impl Representation {
         }
     }
 
+    /// Whether frames have to be taken in by [`update`](Representation::update).
+    pub(super) fn remembers(&self) -> bool {
+        !matches!(self, Representation::Mirror)
+    }
+
     pub(super) fn update(&mut self, mirror: FrameView<'_>) {
         match self {
             Representation::Mirror => {}

@@ -1,0 +1,47 @@
+"""Where a wrapper takes frames from."""
+
+from typing import Any, Literal, TypeAlias
+
+import numpy as np
+from gymnasium import Space, spaces
+from numpy.typing import NDArray
+
+from prf._native import to_grey
+from prf.envs.options import Size, choice, read_size
+
+Source: TypeAlias = Literal["render", "observation"]
+
+SHAPES = "(height, width), (height, width, 1), (height, width, 3) or (height, width, 4)"
+
+
+class Frames:
+    """Turns what an environment renders or lets see into grey frames of one size."""
+
+    def __init__(
+        self, source: Source, size: Size | None, render_mode: str | None, observation_space: Space[Any]
+    ) -> None:
+        choice("source", source, ("render", "observation"))
+        self.are_rendered = source == "render"
+        """Whether frames are what ``render()`` gives rather than observations."""
+        self._size = None if size is None else read_size("size", size)
+        if self.are_rendered and render_mode != "rgb_array":
+            raise ValueError(
+                f"env: got render_mode={render_mode!r}, expected 'rgb_array'; or take source='observation'"
+            )
+        if not self.are_rendered:
+            check_observation_space(observation_space)
+
+    def grey(self, frame: object) -> NDArray[np.uint8]:
+        """The frame in grey."""
+        if not isinstance(frame, np.ndarray):
+            what = "render()" if self.are_rendered else "observation"
+            raise TypeError(f"{what}: got {type(frame).__name__}, expected an array of shape {SHAPES}")
+        return to_grey(frame, size=self._size)
+
+
+def check_observation_space(space: Space[Any]) -> None:
+    """Refuses observations that are no pictures."""
+    is_box = isinstance(space, spaces.Box) and space.dtype == np.uint8
+    shape = space.shape or ()
+    if not is_box or len(shape) not in (2, 3) or (len(shape) == 3 and shape[2] not in (1, 3, 4)):
+        raise ValueError(f"env: got observations of {space}, expected a Box of uint8 with shape {SHAPES}")
