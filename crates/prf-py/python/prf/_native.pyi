@@ -1,3 +1,4 @@
+from collections.abc import Sequence
 from typing import Literal, TypeAlias
 
 import numpy as np
@@ -6,7 +7,7 @@ from numpy.typing import NDArray
 _Norm: TypeAlias = Literal["none", "l1", "l1-sqrt", "l2", "l2-hys"]
 _Scale: TypeAlias = Literal["none", "sqrt-blocks", "sqrt-features"]
 
-__all__ = ["__version__", "distance", "hog", "reward"]
+__all__ = ["__version__", "distance", "hog", "main", "reward"]
 
 __version__: str
 
@@ -45,3 +46,4 @@ def distance(
     norm: _Norm = "l2",
     scale: _Scale = "sqrt-blocks",
 ) -> float: ...
+def main(args: Sequence[str]) -> int: ...
