@@ -37,14 +37,14 @@ fn executable(messages: &str) -> Option<PathBuf> {
 /// If there is no Python that serves, or pip can't fetch them.
 pub(super) fn peers(root: &Path) -> Result<Command> {
     let folder = root.join("tests/compare");
-    let requirements = folder.join("requirements.txt");
+    let requirements = [folder.join("requirements.txt")];
     let python = Python::find(&env::var_os("PATH").unwrap_or_default())?;
     let venv = Venv::new(target(root).join("compare").join("venv"), &python, &requirements)?;
     if !venv.is_ready() {
         python.require_venv()?;
         succeed(venv.make(&python), "the virtual environment can't be made")?;
-        let mut pip = venv.pip_install();
-        pip.args(["--only-binary=:all:", "--requirement"]).arg(&requirements);
+        let mut pip = venv.install_requirements(&requirements);
+        pip.arg("--only-binary=:all:");
         succeed(
             pip,
             "pip can't fetch what tests/compare/requirements.txt names: check the network and pip's settings",

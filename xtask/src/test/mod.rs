@@ -1,12 +1,15 @@
 //! `cargo xtask test`: every suite, each run to its end, and one sum.
 
 use std::env;
+use std::ffi::OsString;
 use std::io::{Write, stdout};
 use std::path::Path;
 use std::process::{Command, ExitCode};
 
 use anyhow::Result;
 
+mod clients;
+mod package;
 mod suite;
 mod tally;
 mod video;
@@ -28,6 +31,7 @@ pub fn run(root: &Path) -> Result<ExitCode> {
         run_suite(&mut sink, "workspace", |runner| workspace(root, runner)),
         run_suite(&mut sink, "prf-cli without libtorch", |runner| without_libtorch(root, runner)),
         run_suite(&mut sink, "wheel", |runner| wheel::test(root, runner)),
+        run_suite(&mut sink, "wheel with its clients", |runner| clients::test(root, runner)),
         run_suite(&mut sink, "videos by ffmpeg", |runner| video::test(root, runner)),
     ];
     let sum = report(&mut sink, &outcomes)?;
@@ -78,4 +82,11 @@ fn cargo_at(root: &Path) -> Command {
     // Its lines are read, and colours would be in the way.
     command.current_dir(root).env("CARGO_TERM_COLOR", "never");
     command
+}
+
+/// What `PATH` is with `folder` before all others.
+fn with_first(folder: &Path) -> Result<OsString> {
+    let path = env::var_os("PATH").unwrap_or_default();
+    let folders = std::iter::once(folder.to_path_buf()).chain(env::split_paths(&path));
+    Ok(env::join_paths(folders)?)
 }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result};
 
-use super::{Runner, wheel, workspace_tests};
+use super::{Runner, wheel, with_first, workspace_tests};
 
 /// Runs the test that needs `ffmpeg` on PATH. The virtual environment of the wheel's tests must be there.
 pub(super) fn test(root: &Path, runner: &mut Runner<'_>) -> Result<()> {
@@ -12,6 +12,6 @@ pub(super) fn test(root: &Path, runner: &mut Runner<'_>) -> Result<()> {
     // With the whole workspace, though it is prf-core's: so what is built already serves.
     let mut tests = workspace_tests(root)?;
     tests.args(["--test", "real_ffmpeg"]);
-    tests.env("PATH", wheel::with_first(&folder).context("can't put ffmpeg on PATH")?);
+    tests.env("PATH", with_first(&folder).context("can't put ffmpeg on PATH")?);
     runner.run(tests)
 }
