@@ -17,12 +17,14 @@ pub(crate) struct Venv {
 }
 
 impl Venv {
-    /// The one in `folder`, for this Python and what the file of requirements says now.
-    pub(crate) fn new(folder: PathBuf, python: &Python, requirements: &Path) -> Result<Venv> {
-        let wanted =
-            fs::read_to_string(requirements).with_context(|| format!("can't read {}", requirements.display()))?;
+    /// The one in `folder`, for this Python and what the files of requirements say now.
+    pub(crate) fn new(folder: PathBuf, python: &Python, requirements: &[PathBuf]) -> Result<Venv> {
         let (major, minor) = python.version();
-        let stamp = format!("Python {major}.{minor}\n{wanted}");
+        let mut stamp = format!("Python {major}.{minor}\n");
+        for file in requirements {
+            let wanted = fs::read_to_string(file).with_context(|| format!("can't read {}", file.display()))?;
+            stamp.push_str(&wanted);
+        }
         Ok(Venv { folder, stamp })
     }
 
@@ -49,9 +51,19 @@ impl Venv {
         Command::new(self.folder.join("bin/python"))
     }
 
-    pub(crate) fn pip_install(&self) -> Command {
+    /// A command of its pip, such as `install`.
+    pub(crate) fn pip(&self, name: &str) -> Command {
         let mut command = self.python();
-        command.args(["-m", "pip", "install", "--disable-pip-version-check"]);
+        command.args(["-m", "pip", name, "--disable-pip-version-check"]);
+        command
+    }
+
+    /// A command that installs what the files of requirements name.
+    pub(crate) fn install_requirements(&self, files: &[PathBuf]) -> Command {
+        let mut command = self.pip("install");
+        for file in files {
+            command.arg("--requirement").arg(file);
+        }
         command
     }
 

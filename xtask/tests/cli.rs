@@ -179,7 +179,14 @@ fn prf_gets_its_arguments_and_gives_its_exit_code() -> TestResult {
 #[test]
 fn an_unknown_command_is_misuse() -> TestResult {
     let bench = Bench::new()?;
-    for args in [&["tset"][..], &[], &["test", "extra"], &["compare", "speed"], &["compare", "perception", "extra"], &["compare", "python", "extra"]] {
+    for args in [
+        &["tset"][..],
+        &[],
+        &["test", "extra"],
+        &["compare", "speed"],
+        &["compare", "perception", "extra"],
+        &["compare", "python", "extra"],
+    ] {
         let ended = end(bench.command(args))?;
         assert_eq!(ended.code, Some(2));
         assert!(ended.stderr.starts_with("usage: cargo xtask"), "{}", ended.stderr);

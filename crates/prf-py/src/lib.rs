@@ -1,10 +1,11 @@
 //! The native half of the Python package `prf`. It reads arrays, lets go of the GIL, calls `prf_core`
-//! and `prf_envs`, and turns errors into exceptions; nothing is computed here.
+//! and `prf_envs`, and turns errors into exceptions; nothing is computed here. The command line is `prf_cli`'s.
 //!
 //! Docs of functions and classes are their docstrings. `python/prf/_native.pyi` has their types.
 
 mod arg;
 mod batch;
+mod command;
 mod crop;
 mod ema;
 mod error;
@@ -28,6 +29,8 @@ use pyo3::prelude::*;
 /// Nothing here needs the GIL: what is shared is frozen or behind a lock.
 #[pymodule(gil_used = false)]
 mod _native {
+    #[pymodule_export]
+    use super::command::main;
     #[pymodule_export]
     use super::crop::{crop, crop_box, crop_box_batch};
     #[pymodule_export]

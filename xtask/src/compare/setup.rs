@@ -36,7 +36,7 @@ fn executable(messages: &str) -> Option<PathBuf> {
 /// # Errors
 /// If there is no Python that serves, or pip can't fetch them.
 pub(super) fn peers(root: &Path) -> Result<Command> {
-    let venv = fetched(root, "venv", "requirements.txt")?;
+    let venv = fetched(root, "venv", &["requirements.txt"])?;
     Ok(script(root, &venv, "perception_worker.py"))
 }
 
@@ -45,8 +45,8 @@ pub(super) fn peers(root: &Path) -> Result<Command> {
 /// # Errors
 /// As [`peers`]; if the package can't be built.
 pub(super) fn package(root: &Path) -> Result<Command> {
-    let venv = fetched(root, "python", "requirements-python.txt")?;
-    let mut pip = venv.pip_install();
+    let venv = fetched(root, "python", &["requirements.txt", "requirements-python.txt"])?;
+    let mut pip = venv.pip("install");
     pip.args(["--no-build-isolation", "--no-deps", "--force-reinstall"]).arg(root.join("crates/prf-py"));
     // maturin is found there.
     pip.env("PATH", with_first(&venv.folder().join("bin"))?);
@@ -54,18 +54,20 @@ pub(super) fn package(root: &Path) -> Result<Command> {
     Ok(script(root, &venv, "python_package.py"))
 }
 
-/// A virtual environment with what a file in `tests/compare` names.
-fn fetched(root: &Path, name: &str, requirements: &str) -> Result<Venv> {
-    let requirements = root.join("tests/compare").join(requirements);
+/// A virtual environment with what files in `tests/compare` name.
+fn fetched(root: &Path, name: &str, files: &[&str]) -> Result<Venv> {
+    let requirements: Vec<PathBuf> = files.iter().map(|file| root.join("tests/compare").join(file)).collect();
     let python = Python::find(&env::var_os("PATH").unwrap_or_default())?;
     let venv = Venv::new(target(root).join("compare").join(name), &python, &requirements)?;
     if !venv.is_ready() {
         python.require_venv()?;
         succeed(venv.make(&python), "the virtual environment can't be made")?;
-        let mut pip = venv.pip_install();
-        pip.args(["--only-binary=:all:", "--requirement"]).arg(&requirements);
-        let complaint =
-            format!("pip can't fetch what {} names: check the network and pip's settings", requirements.display());
+        let mut pip = venv.install_requirements(&requirements);
+        pip.arg("--only-binary=:all:");
+        let complaint = format!(
+            "pip can't fetch what tests/compare/{} names: check the network and pip's settings",
+            files.join(", ")
+        );
         succeed(pip, &complaint)?;
         venv.mark_ready()?;
     }

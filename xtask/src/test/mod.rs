@@ -7,6 +7,8 @@ use std::process::{Command, ExitCode};
 
 use anyhow::Result;
 
+mod clients;
+mod package;
 mod suite;
 mod tally;
 mod video;
@@ -28,6 +30,7 @@ pub fn run(root: &Path) -> Result<ExitCode> {
         run_suite(&mut sink, "workspace", |runner| workspace(root, runner)),
         run_suite(&mut sink, "prf-cli without libtorch", |runner| without_libtorch(root, runner)),
         run_suite(&mut sink, "wheel", |runner| wheel::test(root, runner)),
+        run_suite(&mut sink, "wheel with its clients", |runner| clients::test(root, runner)),
         run_suite(&mut sink, "videos by ffmpeg", |runner| video::test(root, runner)),
     ];
     let sum = report(&mut sink, &outcomes)?;

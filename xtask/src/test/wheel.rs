@@ -1,47 +1,28 @@
-//! The Python package: installed into a virtual environment of its own and tested there.
+//! The Python package alone with what it depends on.
 
-use std::env;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
 
 use super::Runner;
-use crate::python::Python;
-use crate::venv::{Venv, target, with_first};
+use super::package::Environment;
+use crate::venv::target;
 
-/// Installs the package as a user would and runs its tests. The environment is kept for the next
-/// time, when nothing need be fetched.
+/// Of cargo's target folder.
+const VENV: &str = "venv";
+
+/// Builds the wheel, for later suites too, and runs the package's tests.
 pub(super) fn test(root: &Path, runner: &mut Runner<'_>) -> Result<()> {
-    let package = root.join("crates/prf-py");
-    let requirements = package.join("requirements-test.txt");
-    let python = Python::find(&env::var_os("PATH").unwrap_or_default())?;
-    let venv = Venv::new(target(root).join("venv"), &python, &requirements)?;
-    if venv.is_ready() {
-        let mut pip = pip_install(&venv)?;
-        pip.args(["--no-build-isolation", "--no-deps", "--force-reinstall"]);
-        pip.arg(&package);
-        runner.run(pip)?;
-    } else {
-        python.require_venv()?;
-        runner.run(venv.make(&python))?;
-        let mut pip = pip_install(&venv)?;
-        pip.arg("--requirement").arg(&requirements);
-        runner.run(pip)?;
-        let mut pip = pip_install(&venv)?;
-        pip.arg(format!("{}[test]", package.display()));
-        runner.run(pip)?;
-        venv.mark_ready()?;
-    }
-    let mut pytest = venv.python();
-    pytest.args(["-m", "pytest", "--color=no"]).arg(package.join("tests"));
-    pytest.current_dir(&package);
-    runner.run(pytest)
+    let environment = Environment::prepare(root, VENV, &["requirements-test.txt"], runner)?;
+    environment.build_wheel(runner)?;
+    environment.install_wheel(runner)?;
+    environment.pytest("tests", runner)
 }
 
 /// A folder with the `ffmpeg` that the tests' requirements bring along.
 pub(super) fn ffmpeg(root: &Path) -> Result<PathBuf> {
-    let venv = target(root).join("venv");
+    let venv = target(root).join(VENV);
     let code = "import os, sys, imageio_ffmpeg\n\
                 os.makedirs(sys.argv[1], exist_ok=True)\n\
                 link = os.path.join(sys.argv[1], 'ffmpeg')\n\
@@ -56,15 +37,4 @@ pub(super) fn ffmpeg(root: &Path) -> Result<PathBuf> {
         venv.display()
     );
     Ok(folder)
-}
-
-/// pip, for what has to be built.
-fn pip_install(venv: &Venv) -> Result<Command> {
-    let mut command = venv.pip_install();
-    command
-        // maturin is found there when pip does not fetch one of its own.
-        .env("PATH", with_first(&venv.folder().join("bin"))?)
-        // With checks on, like the other tests, and sharing what is built already.
-        .env("MATURIN_PEP517_ARGS", "--profile=dev");
-    Ok(command)
 }

@@ -42,9 +42,10 @@ pub(crate) fn run(command: Command, printer: &mut Printer) -> Result<ExitStatus>
 
 #[cfg(not(feature = "train"))]
 fn without_training() -> anyhow::Error {
-    crate::error::CliError::failed(
-        "this prf was built without training; to get `train` and `eval`, install it with \
-         `cargo xtask setup && cargo install --path crates/prf-cli` in PRF's repository",
-    )
-    .into()
+    crate::error::CliError::failed("this prf was built without training, as the Python package's is")
+        .hint(
+            "for `train` and `eval`, install the command with `cargo xtask setup && cargo install --path \
+             crates/prf-cli` in a clone of PRF's repository",
+        )
+        .into()
 }

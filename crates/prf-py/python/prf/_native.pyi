@@ -30,6 +30,7 @@ __all__ = [
     "distance_batch",
     "hog",
     "hog_batch",
+    "main",
     "match_template",
     "match_template_batch",
     "motion_template",
@@ -324,3 +325,5 @@ class EmaState:
     def __getnewargs_ex__(self) -> tuple[tuple[()], dict[str, Any]]: ...
     def __getstate__(self) -> NDArray[np.float32]: ...
     def __setstate__(self, values: NDArray[np.float32]) -> None: ...
+
+def main(args: Sequence[str]) -> int: ...
