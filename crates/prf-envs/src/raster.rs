@@ -14,8 +14,9 @@ use prf_core::{FrameMut, Rect};
 pub fn fill_rect(frame: &mut FrameMut<'_>, world: (usize, usize), rect: Rect, value: u8) {
     let columns = covered(rect.x, rect.width, world.0, frame.width());
     let rows = covered(rect.y, rect.height, world.1, frame.height());
-    for y in rows {
-        fill(&mut frame.row_mut(y)[columns.clone()], value);
+    let width = frame.width();
+    for row in frame.as_mut_slice()[rows.start * width..rows.end * width].chunks_exact_mut(width) {
+        fill(&mut row[columns.clone()], value);
     }
 }
 

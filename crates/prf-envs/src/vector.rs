@@ -14,7 +14,7 @@ const TAG: &[u8] = b"vector1";
 
 /// Fewer tasks than this are not worth a thread: to start one costs about as much as these steps.
 const PERCEPTUAL_PER_THREAD: usize = 4;
-const VARIABLE_PER_THREAD: usize = 128;
+const VARIABLE_PER_THREAD: usize = 512;
 /// So many are taken at once by a thread that is done with what it had.
 const SHARE: usize = 2;
 

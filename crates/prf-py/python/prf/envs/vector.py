@@ -158,8 +158,7 @@ class WorldVectorEnv(VectorEnv[Observations, Actions, NDArray[Any]]):
         numbers = self._read_actions(actions)
         restart = self._restart
         if restart is not None:
-            for index in np.flatnonzero(restart).tolist():
-                self._choose_episode(index, None)
+            self._draw_episodes(restart)
         observations = self._observations()
         rewards, scores = np.empty(self.num_envs), np.empty(self.num_envs)
         terminated, truncated = np.empty(self.num_envs, np.bool_), np.empty(self.num_envs, np.bool_)
@@ -167,14 +166,13 @@ class WorldVectorEnv(VectorEnv[Observations, Actions, NDArray[Any]]):
             numbers, restart, self._seeds, observations, rewards, scores, terminated, truncated
         )
         self._restart = None
-        infos = {"score": scores, "_score": self._all.copy()} if restart is None else score_info(scores, ~restart)
+        infos = score_info(scores, self._all.copy() if restart is None else ~restart)
         if ends and self._mode is AutoresetMode.NEXT_STEP:
             self._restart = terminated | truncated
         elif ends and self._mode is AutoresetMode.SAME_STEP:
             over = terminated | truncated
-            infos = score_info(scores, ~over) | final_info(observations, scores, over)
-            for index in np.flatnonzero(over).tolist():
-                self._choose_episode(index, None)
+            infos = score_info(np.where(over, 0.0, scores), ~over) | final_info(observations, scores, over)
+            self._draw_episodes(over)
             observations = self._begin(over)
         return observations, rewards, terminated, truncated, infos
 
@@ -199,6 +197,10 @@ class WorldVectorEnv(VectorEnv[Observations, Actions, NDArray[Any]]):
         observations = self._observations()
         self._tasks.reset(mask, self._seeds, observations)
         return observations
+
+    def _draw_episodes(self, mask: NDArray[np.bool_]) -> None:
+        for index in mask.nonzero()[0].tolist():
+            self._choose_episode(index, None)
 
     def _choose_episode(self, index: int, seed: int | None) -> None:
         if seed is None:
@@ -284,8 +286,8 @@ def read_mode(mode: AutoresetMode | str) -> AutoresetMode:
 
 
 def score_info(scores: NDArray[np.float64], mask: NDArray[np.bool_]) -> dict[str, Any]:
-    """The scores where there are any, as Gymnasium joins the ``info`` of environments."""
-    return {"score": np.where(mask, scores, 0.0), "_score": mask} if mask.any() else {}
+    """Scores, of which the mask says where there are any, as Gymnasium joins the ``info`` of environments."""
+    return {"score": scores, "_score": mask} if mask.any() else {}
 
 
 def final_info(
@@ -293,11 +295,11 @@ def final_info(
 ) -> dict[str, Any]:
     """What the episodes that are over came to, as Gymnasium hands it over."""
     final = np.full(len(over), None, object)
-    for index in np.flatnonzero(over):
+    for index in over.nonzero()[0].tolist():
         final[index] = observations[index].copy()
     return {
         "final_obs": final,
         "_final_obs": over.copy(),
-        "final_info": score_info(scores, over.copy()),
+        "final_info": score_info(np.where(over, scores, 0.0), over.copy()),
         "_final_info": over.copy(),
     }
