@@ -1,7 +1,10 @@
 """Pictures for the tests, the same every time."""
 
+from pathlib import Path
+
 import numpy as np
 from numpy.typing import NDArray
+from PIL import Image, ImageSequence
 
 Bytes = NDArray[np.uint8]
 
@@ -41,3 +44,26 @@ PICTURES = {
     "stripes": stripes(51, 50),
     "black": np.zeros((40, 44), np.uint8),
 }
+
+
+def moving(count: int, height: int, width: int) -> Bytes:
+    """A bar that grows and a box that wanders, before noise that stays below a threshold of 30."""
+    rng = np.random.default_rng(count)
+    frames = rng.integers(0, 15, (count, height, width), np.uint8)
+    for t in range(count):
+        frames[t, 2 : 6 + t, width // 3 : width // 2] = 200
+        left = 3 * t % (width - 6)
+        frames[t, -9:-3, left : left + 6] = 255
+    return frames
+
+
+def read(path: Path) -> Bytes:
+    """A grey picture in a file."""
+    return read_frames(path)[0]
+
+
+def read_frames(path: Path) -> Bytes:
+    """The frames of a grey animation."""
+    with Image.open(path) as image:
+        frames = [np.asarray(frame.convert("L"), np.uint8) for frame in ImageSequence.Iterator(image)]
+    return np.stack(frames)

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from pictures import boxes, natural
+from refusal import refuse
 
 import prf
 
@@ -82,14 +83,6 @@ def test_only_arrays_with_gaps_are_copied_and_once(monkeypatch: pytest.MonkeyPat
 def test_one_value_for_all_pixels_is_a_picture() -> None:
     flat = np.broadcast_to(np.uint8(7), (20, 30))
     np.testing.assert_array_equal(prf.hog(flat), np.zeros(20 * 30 * 9, np.float32))
-
-
-def refuse(function: Callable[..., object], error: type[Exception], *parts: str) -> None:
-    with pytest.raises(error) as caught:
-        function()
-    assert type(caught.value) is error
-    for part in parts:
-        assert part in str(caught.value)
 
 
 @pytest.mark.parametrize(
