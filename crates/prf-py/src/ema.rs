@@ -5,10 +5,10 @@ use prf_core::{EmaState as Ema, Error};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-use crate::arg::extract;
 use crate::error::value_error;
 use crate::exclusive::Exclusive;
 use crate::image::Picture;
+use crate::options::Options;
 use crate::values::{decimal, repr};
 
 /// Exponential moving average of the frames of an episode: what an agent sees in place of a single frame.
@@ -61,9 +61,11 @@ impl Average {
 #[pymethods]
 impl EmaState {
     #[new]
-    #[pyo3(signature = (decay=None), text_signature = "(decay=0.7)")]
-    fn new(decay: Option<&Bound<'_, PyAny>>) -> PyResult<EmaState> {
-        let decay = decay.map_or(Ok(0.7), |decay| extract("decay", decay))?;
+    #[pyo3(signature = (**options), text_signature = "(*, decay=0.7)")]
+    fn new(options: Option<Bound<'_, PyDict>>) -> PyResult<EmaState> {
+        let options = Options::new("EmaState", options);
+        let decay = options.get("decay")?.unwrap_or(0.7);
+        options.finish()?;
         Average::new([1, 1], decay).map_err(|error| value_error("decay", &error))?;
         Ok(EmaState { decay, average: Exclusive::new(None) })
     }

@@ -99,6 +99,16 @@ pub(crate) fn match_template<'py>(
 ///     As :func:`match_template`.
 /// MemoryError
 ///     There is no room for the result.
+///
+/// Examples
+/// --------
+/// >>> import numpy as np
+/// >>> import prf
+/// >>> images = np.random.default_rng(0).integers(0, 256, (5, 84, 84), np.uint8)
+/// >>> results = prf.match_template_batch(images, images[3, 30:39, 50:62])
+/// >>> image, y, x = np.unravel_index(results.argmax(), results.shape)
+/// >>> (int(image), int(x), int(y))
+/// (3, 50, 30)
 #[pyfunction]
 #[pyo3(
     signature = (images, template, **options),

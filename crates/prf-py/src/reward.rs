@@ -123,6 +123,15 @@ pub(crate) fn distance(
 /// ------
 /// TypeError, ValueError
 ///     As :func:`distance`.
+///
+/// Examples
+/// --------
+/// >>> import numpy as np
+/// >>> import prf
+/// >>> goal = np.zeros((84, 84), np.uint8)
+/// >>> goal[10:30, 10:20] = 255
+/// >>> prf.reward_batch(goal, np.stack([goal, np.roll(goal, 5, axis=1)]))
+/// array([1., 1.], dtype=float32)
 #[pyfunction]
 #[pyo3(
     signature = (goal, frames, **options),
@@ -159,6 +168,15 @@ pub(crate) fn reward_batch<'py>(
 /// ------
 /// TypeError, ValueError
 ///     As :func:`distance`.
+///
+/// Examples
+/// --------
+/// >>> import numpy as np
+/// >>> import prf
+/// >>> goal = np.zeros((84, 84), np.uint8)
+/// >>> goal[10:30, 10:20] = 255
+/// >>> prf.distance_batch(goal, np.stack([goal, np.roll(goal, 5, axis=1)]))
+/// array([0., 0.], dtype=float32)
 #[pyfunction]
 #[pyo3(
     signature = (goal, frames, **options),

@@ -9,6 +9,11 @@ from PIL import Image, ImageSequence
 Bytes = NDArray[np.uint8]
 
 
+def to_bytes(values: NDArray[np.float64]) -> Bytes:
+    rounded: NDArray[np.float64] = np.rint(values)
+    return rounded.astype(np.uint8)
+
+
 def natural(height: int, width: int, seed: int = 1) -> Bytes:
     """Noise whose amplitude falls with the frequency, as it does in photographs."""
     rng = np.random.default_rng(seed)
@@ -17,8 +22,7 @@ def natural(height: int, width: int, seed: int = 1) -> Bytes:
     spectrum /= np.maximum(np.hypot(rows, columns), 1 / max(height, width))
     noise = np.fft.ifft2(spectrum).real
     low, high = noise.min(), noise.max()
-    picture: Bytes = np.round(1 + 254 * (noise - low) / (high - low)).astype(np.uint8)
-    return picture
+    return to_bytes(1 + 254 * (noise - low) / (high - low))
 
 
 def boxes(height: int, width: int) -> Bytes:
@@ -34,8 +38,7 @@ def stripes(height: int, width: int) -> Bytes:
     """Slanted waves, so that every direction's neighbours are seen."""
     y, x = np.mgrid[:height, :width]
     waves = np.sin(x / 3 + y / 5) + np.sin(x * y / 90)
-    picture: Bytes = np.round(63 * (waves + 2)).astype(np.uint8)
-    return picture
+    return to_bytes(63 * (waves + 2))
 
 
 PICTURES = {
@@ -49,7 +52,7 @@ PICTURES = {
 def moving(count: int, height: int, width: int) -> Bytes:
     """A bar that grows and a box that wanders, before noise that stays below a threshold of 30."""
     rng = np.random.default_rng(count)
-    frames = rng.integers(0, 15, (count, height, width), np.uint8)
+    frames: Bytes = rng.integers(0, 15, (count, height, width), np.uint8)
     for t in range(count):
         frames[t, 2 : 6 + t, width // 3 : width // 2] = 200
         left = 3 * t % (width - 6)
@@ -59,11 +62,13 @@ def moving(count: int, height: int, width: int) -> Bytes:
 
 def read(path: Path) -> Bytes:
     """A grey picture in a file."""
-    return read_frames(path)[0]
+    picture: Bytes = read_frames(path)[0]
+    return picture
 
 
 def read_frames(path: Path) -> Bytes:
     """The frames of a grey animation."""
     with Image.open(path) as image:
         frames = [np.asarray(frame.convert("L"), np.uint8) for frame in ImageSequence.Iterator(image)]
-    return np.stack(frames)
+    stack: Bytes = np.stack(frames)
+    return stack

@@ -3,17 +3,19 @@
 import itertools
 import warnings
 from collections.abc import Callable
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from pictures import boxes, natural
+from pictures import natural
 from refusal import refuse
 
 import prf
 
 IMAGE = natural(24, 36)
+PART = IMAGE[3:9, 2:9].copy()
 
 
 def spaced(array: NDArray[Any]) -> NDArray[Any]:
@@ -55,14 +57,44 @@ def test_only_the_pixels_count(form: str, dtype: type[np.generic]) -> None:
     np.testing.assert_array_equal(prf.hog(other, cell_px=4), prf.hog(image, cell_px=4))
 
 
+# Calls with one array of bytes, and what the array is called.
+BYTES: dict[str, tuple[str, Callable[[Any], Any]]] = {
+    "reward, goal": ("goal", lambda array: prf.reward(array, IMAGE)),
+    "reward, frame": ("frame", lambda array: prf.reward(IMAGE, array)),
+    "distance, goal": ("goal", lambda array: prf.distance(array, IMAGE)),
+    "distance, frame": ("frame", lambda array: prf.distance(IMAGE, array)),
+    "reward_batch, goal": ("goal", lambda array: prf.reward_batch(array, IMAGE[None])),
+    "crop": ("image", prf.crop),
+    "crop_box": ("image", prf.crop_box),
+    "match_template, image": ("image", lambda array: prf.match_template(array, PART)),
+    "match_template, template": ("template", lambda array: prf.match_template(IMAGE, array)),
+    "match_template_batch, template": (
+        "template",
+        lambda array: prf.match_template_batch(IMAGE[None], array),
+    ),
+    "MotionTemplate": ("frame", lambda array: prf.MotionTemplate().update(array)),
+    "EmaState": ("frame", lambda array: prf.EmaState().update(array)),
+    "DirectGoal": ("goal", lambda array: prf.DirectGoal(array).goal),
+    "WindowGoal": ("goal", lambda array: prf.WindowGoal(array).goal),
+    "MotionGoal": ("goal", lambda array: prf.MotionGoal(array).goal),
+    "reset": ("frame", lambda array: prf.DirectGoal(IMAGE).reset(array)),
+    "score": ("frame", lambda array: prf.DirectGoal(IMAGE).score(array)),
+    "explain": ("frame", lambda array: prf.DirectGoal(IMAGE).explain(array)),
+}
+ANY = {**BYTES, "hog": ("image", prf.hog)}
+takers = pytest.mark.parametrize("taker", BYTES)
+all_takers = pytest.mark.parametrize("taker", ANY)
+
+
+@all_takers
 @pytest.mark.parametrize("form", FORMS)
-def test_goals_and_frames_may_be_of_any_form(form: str) -> None:
-    goal, frame = boxes(40, 30), natural(44, 28)
-    expected = prf.distance(goal, frame)
-    assert prf.distance(FORMS[form](goal), FORMS[form](frame)) == expected
+def test_an_array_may_be_of_any_form(form: str, taker: str) -> None:
+    _, call = ANY[taker]
+    np.testing.assert_array_equal(call(FORMS[form](IMAGE)), call(IMAGE))
 
 
-def test_only_arrays_with_gaps_are_copied_and_once(monkeypatch: pytest.MonkeyPatch) -> None:
+@all_takers
+def test_only_arrays_with_gaps_are_copied_and_once(taker: str, monkeypatch: pytest.MonkeyPatch) -> None:
     copies: list[object] = []
     array = np.array
 
@@ -70,14 +102,28 @@ def test_only_arrays_with_gaps_are_copied_and_once(monkeypatch: pytest.MonkeyPat
         copies.append(arguments)
         return array(*arguments, **options)
 
+    _, call = ANY[taker]
     gaps = spaced(IMAGE)
     monkeypatch.setattr(np, "array", counted)
-    prf.hog(IMAGE)
-    prf.reward(IMAGE, IMAGE)
+    call(IMAGE)
     assert len(copies) == 0
-    prf.hog(gaps)
-    prf.reward(gaps, IMAGE)
-    assert len(copies) == 2
+    call(gaps)
+    assert len(copies) == 1
+
+
+class Subclass(NDArray[np.uint8] if TYPE_CHECKING else np.ndarray):  # type: ignore[misc]
+    """An array that is one more thing."""
+
+
+@all_takers
+def test_arrays_of_subclasses_work_unless_they_are_masked(taker: str, tmp_path: Path) -> None:
+    name, call = ANY[taker]
+    mapped = np.memmap(tmp_path / "image", np.uint8, "w+", shape=IMAGE.shape)
+    mapped[:] = IMAGE
+    for array in (mapped, IMAGE.view(Subclass)):
+        np.testing.assert_array_equal(call(array), call(IMAGE))
+    for masked in (np.ma.masked_less(IMAGE, 9), np.ma.array(IMAGE)):
+        refuse(lambda: call(masked), TypeError, f"{name}: got a masked array, expected a plain one")
 
 
 def test_one_value_for_all_pixels_is_a_picture() -> None:
@@ -86,43 +132,61 @@ def test_one_value_for_all_pixels_is_a_picture() -> None:
 
 
 @pytest.mark.parametrize(
-    "dtype", ["bool", "int8", "int64", "uint16", "float16", "complex64", ">f4", "O", "U3", "M8[s]", [("x", "u1")]]
+    "dtype",
+    ["bool", "int8", "int64", "uint16", "float16", "complex64", ">f4", "O", "U3", "M8[s]", [("x", "u1")]],
 )
 def test_other_dtypes_are_refused(dtype: Any) -> None:
     image: Any = np.zeros((9, 9), dtype)
-    refuse(lambda: prf.hog(image), TypeError, f"image: got an array of {image.dtype}", "uint8, float32 or float64")
-    refuse(lambda: prf.reward(IMAGE, image), TypeError, f"frame: got an array of {image.dtype}", "expected uint8")
-    refuse(lambda: prf.distance(image, IMAGE), TypeError, f"goal: got an array of {image.dtype}", "expected uint8")
+    refuse(
+        lambda: prf.hog(image),
+        TypeError,
+        f"image: got an array of {image.dtype}",
+        "uint8, float32 or float64",
+    )
+    for name, call in BYTES.values():
+        refuse(lambda: call(image), TypeError, f"{name}: got an array of {image.dtype}", "expected uint8")
 
 
-@pytest.mark.parametrize("image", [None, 3, "picture.png", [[1, 2], [3, 4]], memoryview(b"1234"), np.uint8(4)])
-def test_what_is_no_array_is_refused(image: Any) -> None:
-    got = type(image).__name__
-    refuse(lambda: prf.hog(image), TypeError, f"image: got {got}, expected a NumPy array")
-    refuse(lambda: prf.reward(image, IMAGE), TypeError, f"goal: got {got}, expected a NumPy array")
-    refuse(lambda: prf.reward(IMAGE, image), TypeError, f"frame: got {got}, expected a NumPy array")
+@takers
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_floats_are_told_what_to_do(dtype: type[np.generic], taker: str) -> None:
+    name, call = BYTES[taker]
+    refuse(
+        lambda: call(IMAGE.astype(dtype)),
+        TypeError,
+        f"{name}: got an array of float",
+        ".round().astype(np.uint8)",
+    )
 
 
+@all_takers
+@pytest.mark.parametrize("image", [3, [[1, 2], [3, 4]], memoryview(b"1234"), np.uint8(4), object()])
+def test_what_is_no_array_is_refused(image: Any, taker: str) -> None:
+    name, call = ANY[taker]
+    refuse(lambda: call(image), TypeError, f"{name}: got {type(image).__name__}, expected a NumPy array")
+
+
+@all_takers
 @pytest.mark.parametrize(
-    "shape", [(), (9,), (0, 0), (0, 9), (9, 0), (1, 9, 9), (9, 9, 3), (9, 9, 4), (16385, 1), (1, 16385)]
+    "shape", [(), (9,), (0, 0), (0, 9), (9, 0), (1, 1, 9, 9), (9, 9, 9, 3), (16385, 1), (1, 16385)]
 )
-def test_other_shapes_are_refused(shape: tuple[int, ...]) -> None:
-    image = np.zeros(shape, np.uint8)
-    expected = "expected (height, width) with sides of 1 to 16384"
+def test_other_shapes_are_refused(shape: tuple[int, ...], taker: str) -> None:
+    name, call = ANY[taker]
     got = f"got shape ({', '.join(map(str, shape))})"
-    refuse(lambda: prf.hog(image), ValueError, f"image: {got}", expected)
-    refuse(lambda: prf.reward(image, IMAGE), ValueError, f"goal: {got}", expected)
-    refuse(lambda: prf.reward(IMAGE, image), ValueError, f"frame: {got}", expected)
+    expected = "expected (height, width) with sides of 1 to 16384"
+    refuse(lambda: call(np.zeros(shape, np.uint8)), ValueError, f"{name}: {got}", expected)
 
 
-def test_colours_are_told_what_to_do() -> None:
-    refuse(lambda: prf.hog(np.zeros((9, 9, 3), np.uint8)), ValueError, "turn colours to grey first")
+@pytest.mark.parametrize("taker", sorted(ANY.keys() - {"MotionGoal"}))
+@pytest.mark.parametrize("shape", [(9, 9, 3), (9, 9, 4)])
+def test_colours_are_told_what_to_do(shape: tuple[int, ...], taker: str) -> None:
+    refuse(lambda: ANY[taker][1](np.zeros(shape, np.uint8)), ValueError, "turn colours to grey first")
 
 
-def test_a_picture_that_takes_no_memory_itself_is_refused_when_huge() -> None:
-    for dtype in (np.uint8, np.float32, np.float64):
-        huge = np.broadcast_to(np.zeros((), dtype), (1 << 30, 1 << 20))
-        refuse(lambda huge=huge: prf.hog(huge), ValueError, "got shape (1073741824, 1048576)")
+@all_takers
+def test_a_picture_that_takes_no_memory_itself_is_refused_when_huge(taker: str) -> None:
+    huge = np.broadcast_to(np.uint8(9), (1 << 30, 1 << 20))
+    refuse(lambda: ANY[taker][1](huge), ValueError, "got shape (1073741824, 1048576)")
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf, 1e30, 1e300])

@@ -1,6 +1,7 @@
 """Many pictures at once give what each of them gives, however many threads there are."""
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -17,37 +18,31 @@ PART = FRAMES[7, 20:34, 10:31]
 Batch = Callable[..., NDArray[Any]]
 Single = Callable[[Bytes], Any]
 
+
+def episode(frames: Bytes, threads: int | None = None, **options: Any) -> NDArray[np.float32]:
+    return prf.MotionGoal(FRAMES).rewards(frames, threads=threads, **options)
+
+
+LONG: dict[str, Any] = {"block_cells": 2, "cell_px": 5, "feature_vector": False}
+MASKED: dict[str, Any] = {"mask": PART > 7, "method": "ccorr-normed"}
+SCALED: dict[str, Any] = {"cell_px": 4, "scale": "none"}
 PAIRS: dict[str, tuple[Batch, Single]] = {
     "hog": (prf.hog_batch, prf.hog),
-    "hog, long": (
-        lambda images, **options: prf.hog_batch(images, block_cells=2, cell_px=5, feature_vector=False, **options),
-        lambda image: prf.hog(image, block_cells=2, cell_px=5, feature_vector=False),
-    ),
+    "hog, long": (partial(prf.hog_batch, **LONG), partial(prf.hog, **LONG)),
     "crop_box": (prf.crop_box_batch, prf.crop_box),
     "match_template": (
-        lambda images, **options: prf.match_template_batch(images, PART, **options),
-        lambda image: prf.match_template(image, PART),
+        partial(prf.match_template_batch, template=PART),
+        partial(prf.match_template, template=PART),
     ),
     "match_template, masked": (
-        lambda images, **options: prf.match_template_batch(
-            images, PART, mask=PART > 7, method="ccorr-normed", **options
-        ),
-        lambda image: prf.match_template(image, PART, mask=PART > 7, method="ccorr-normed"),
+        partial(prf.match_template_batch, template=PART, **MASKED),
+        partial(prf.match_template, template=PART, **MASKED),
     ),
-    "reward": (
-        lambda frames, **options: prf.reward_batch(GOAL, frames, cell_px=4, scale="none", **options),
-        lambda frame: prf.reward(GOAL, frame, cell_px=4, scale="none"),
-    ),
-    "distance": (
-        lambda frames, **options: prf.distance_batch(GOAL, frames, **options),
-        lambda frame: prf.distance(GOAL, frame),
-    ),
+    "reward": (partial(prf.reward_batch, GOAL, **SCALED), partial(prf.reward, GOAL, **SCALED)),
+    "distance": (partial(prf.distance_batch, GOAL), partial(prf.distance, GOAL)),
     "DirectGoal": (prf.DirectGoal(GOAL).rewards, prf.DirectGoal(GOAL).reward),
     "WindowGoal": (prf.WindowGoal(PART).rewards, prf.WindowGoal(PART).reward),
-    "MotionGoal": (
-        lambda frames, **options: prf.MotionGoal(FRAMES).rewards(frames, **options),
-        prf.MotionGoal(FRAMES).reward,
-    ),
+    "MotionGoal": (episode, prf.MotionGoal(FRAMES).reward),
 }
 
 
@@ -81,16 +76,26 @@ def test_what_is_no_batch_is_refused(name: str) -> None:
     batch: Any = PAIRS[name][0]
     given = "images" if name.startswith(("hog", "crop", "match")) else "frames"
     shape = "(count, height, width)"
-    refuse(lambda: batch(FRAMES[0]), ValueError, f"{given}: got shape (48, 60), expected {shape} with sides of 1 to")
+    refuse(
+        lambda: batch(FRAMES[0]),
+        ValueError,
+        f"{given}: got shape (48, 60), expected {shape} with sides of 1 to",
+    )
     refuse(lambda: batch(FRAMES[None]), ValueError, f"{given}: got shape (1, 23, 48, 60), expected {shape}")
     refuse(lambda: batch(FRAMES[:, :0]), ValueError, f"{given}: got shape (23, 0, 60), expected {shape}")
     refuse(lambda: batch(np.zeros((2, 16385, 1), np.uint8)), ValueError, f"{given}: got shape (2, 16385, 1)")
-    refuse(lambda: batch(list(FRAMES)), TypeError, f"{given}: got list, expected a NumPy array of shape {shape}")
-    refuse(lambda: batch(FRAMES.astype(np.int32)), TypeError, f"{given}: got an array of int32, expected uint8")
+    refuse(
+        lambda: batch(list(FRAMES)), TypeError, f"{given}: got list, expected a NumPy array of shape {shape}"
+    )
+    refuse(
+        lambda: batch(FRAMES.astype(np.int32)), TypeError, f"{given}: got an array of int32, expected uint8"
+    )
     refuse(lambda: batch(np.ma.masked_less(FRAMES, 9)), TypeError, f"{given}: got a masked array")
     refuse(lambda: batch(FRAMES, thread=2), TypeError, "got an unexpected keyword argument 'thread'")
     for threads in (0, 1025):
-        refuse(lambda threads=threads: batch(FRAMES, threads=threads), ValueError, f"threads: got {threads}, expected 1 to 1024")
+        refuse(
+            lambda: batch(FRAMES, threads=threads), ValueError, f"threads: got {threads}, expected 1 to 1024"
+        )
     refuse(lambda: batch(FRAMES, threads=-1), ValueError, "threads: got -1, expected an int of at least 1")
     refuse(lambda: batch(FRAMES, threads=2.0), TypeError, "threads: got float, expected an int of at least 1")
 
@@ -102,7 +107,7 @@ def test_the_first_bad_picture_is_named_however_many_threads_there_are(dtype: ty
         images[at, 3, 5] = np.nan
     for threads in (None, 1, 2, 64):
         message = "images[71]: pixel (5, 3) is NaN, expected a finite number"
-        refuse(lambda threads=threads: prf.hog_batch(images, threads=threads), ValueError, message)
+        refuse(lambda: prf.hog_batch(images, threads=threads), ValueError, message)
 
 
 @pytest.mark.parametrize("name", ["hog", "crop_box", "match_template", "reward", "DirectGoal"])

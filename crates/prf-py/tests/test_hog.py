@@ -6,7 +6,7 @@ import pytest
 import reference
 from numpy.typing import NDArray
 from pictures import PICTURES, natural
-from skimage.feature import hog as skimage_hog
+from untyped import skimage_feature
 
 import prf
 
@@ -19,7 +19,7 @@ SKIMAGE: dict[Norm, str] = {"l1": "L1", "l1-sqrt": "L1-sqrt", "l2": "L2", "l2-hy
 def test_every_norm_and_block_size_equals_scikit_image(picture: str, norm: Norm) -> None:
     image = PICTURES[picture]
     for block, cell, bins in itertools.product((1, 2, 3), (1, 5, 8), (7, 9)):
-        expected = skimage_hog(image / 255, bins, (cell, cell), (block, block), SKIMAGE[norm], feature_vector=False)
+        expected = skimage_feature.hog(image / 255, bins, (cell, cell), (block, block), SKIMAGE[norm], feature_vector=False)
         got = prf.hog(image, orientations=bins, cell_px=cell, block_cells=block, norm=norm, feature_vector=False)
         assert got.shape == expected.shape
         np.testing.assert_allclose(got, expected, rtol=0, atol=1e-5, err_msg=f"{block=} {cell=} {bins=}")
@@ -28,7 +28,7 @@ def test_every_norm_and_block_size_equals_scikit_image(picture: str, norm: Norm)
 @pytest.mark.parametrize("dtype", ["f4", "f8"])
 def test_floats_equal_scikit_image(dtype: str) -> None:
     image: NDArray[Any] = np.random.default_rng(2).random((45, 62)).astype(dtype)
-    expected = skimage_hog(image, 9, (6, 6), (2, 2), "L2-Hys")
+    expected = skimage_feature.hog(image, 9, (6, 6), (2, 2), "L2-Hys")
     np.testing.assert_allclose(prf.hog(image, cell_px=6, block_cells=2, norm="l2-hys"), expected, rtol=0, atol=1e-5)
 
 

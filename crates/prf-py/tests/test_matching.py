@@ -8,7 +8,7 @@ import pytest
 from numpy.typing import NDArray
 from pictures import PICTURES, Bytes, natural
 from refusal import refuse
-from skimage.feature import match_template as skimage_match_template
+from untyped import skimage_feature
 
 import prf
 
@@ -24,7 +24,7 @@ def template(height: int, width: int) -> Bytes:
 
 @pytest.mark.parametrize("size", SIZES[1:])
 def test_the_default_is_scikit_image_s(size: tuple[int, int]) -> None:
-    expected: Any = skimage_match_template(IMAGE, template(*size))
+    expected = skimage_feature.match_template(IMAGE, template(*size))
     got = prf.match_template(IMAGE, template(*size))
     assert got.shape == expected.shape == (60 - size[0] + 1, 83 - size[1] + 1)
     assert got.dtype == np.float32
@@ -46,7 +46,12 @@ def test_masks_are_opencv_s(method: Method) -> None:
     y, x = np.mgrid[:15, :19]
     mask = np.hypot(y - 7, x - 9) < 7
     expected = cv2.matchTemplate(IMAGE, template(15, 19), OPENCV[method], mask=mask.astype(np.uint8))
-    for form in (mask, mask.astype(np.uint8), np.where(mask, np.uint8(255), np.uint8(0)), np.asfortranarray(mask)):
+    for form in (
+        mask,
+        mask.astype(np.uint8),
+        np.where(mask, np.uint8(255), np.uint8(0)),
+        np.asfortranarray(mask),
+    ):
         got = prf.match_template(IMAGE, template(15, 19), mask=form, method=method)
         np.testing.assert_allclose(got, expected, rtol=0, atol=1e-4)
     unmasked = prf.match_template(IMAGE, template(15, 19), mask=None, method=method)
@@ -56,7 +61,7 @@ def test_masks_are_opencv_s(method: Method) -> None:
 def test_x_and_y_are_where_the_template_lies() -> None:
     result = prf.match_template(IMAGE, IMAGE[30:39, 50:62])
     y, x = np.unravel_index(result.argmax(), result.shape)
-    assert (x, y) == (50, 30)
+    assert (int(x), int(y)) == (50, 30)
     assert result[y, x] == pytest.approx(1, abs=1e-4)
 
 
@@ -74,15 +79,32 @@ def test_what_can_not_be_matched_is_refused() -> None:
     small = template(9, 12)
     for size in [(61, 83), (60, 84)]:
         message = f"image: a template of {size[1]}x{size[0]} px doesn't fit into a frame of 83x60 px"
-        refuse(lambda size=size: call(IMAGE, np.ones(size, np.uint8)), ValueError, message)
+        refuse(lambda: call(IMAGE, np.ones(size, np.uint8)), ValueError, message)
     refuse(lambda: call(IMAGE, small, mask=small[1:]), ValueError, "mask: got 12x8 px, expected 12x9 px")
-    refuse(lambda: call(IMAGE, small, mask=small * 0), ValueError, "mask: got only zeros, expected a pixel that counts")
-    refuse(lambda: call(IMAGE, small, mask=small / 255), TypeError, "mask: got an array of float64, expected uint8")
+    refuse(
+        lambda: call(IMAGE, small, mask=small * 0),
+        ValueError,
+        "mask: got only zeros, expected a pixel that counts",
+    )
+    refuse(
+        lambda: call(IMAGE, small, mask=small / 255),
+        TypeError,
+        "mask: got an array of float64, expected uint8",
+    )
     refuse(lambda: call(IMAGE, small, mask="mask.png"), TypeError, "mask: got str, expected a NumPy array")
-    refuse(lambda: call(IMAGE, small, method="TM_CCOEFF_NORMED"), ValueError, "method: unknown variant", "ccoeff-normed")
+    refuse(
+        lambda: call(IMAGE, small, method="TM_CCOEFF_NORMED"),
+        ValueError,
+        "method: unknown variant",
+        "ccoeff-normed",
+    )
     refuse(lambda: call(IMAGE, small, method=5), TypeError, "method: got int, expected a str")
     refuse(lambda: call(IMAGE / 255, small), TypeError, "image: got an array of float64, expected uint8")
-    refuse(lambda: call(IMAGE, [[1]]), TypeError, "template: got list, expected a NumPy array of shape (height, width)")
+    refuse(
+        lambda: call(IMAGE, [[1]]),
+        TypeError,
+        "template: got list, expected a NumPy array of shape (height, width)",
+    )
 
 
 def test_a_mask_of_bools_is_as_wide_as_it_looks() -> None:

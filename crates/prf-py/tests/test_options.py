@@ -1,6 +1,7 @@
 """Options out of range are refused with what was got and what was expected, by every function."""
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -11,10 +12,17 @@ import prf
 
 IMAGE = natural(24, 36)
 FUNCTIONS: list[Callable[..., object]] = [
-    lambda **options: prf.hog(IMAGE, **options),
-    lambda **options: prf.reward(IMAGE, IMAGE, **options),
-    lambda **options: prf.distance(IMAGE, IMAGE, **options),
+    partial(prf.hog, IMAGE),
+    partial(prf.reward, IMAGE, IMAGE),
+    partial(prf.distance, IMAGE, IMAGE),
+    partial(prf.hog_batch, IMAGE[None]),
+    partial(prf.reward_batch, IMAGE, IMAGE[None]),
+    partial(prf.distance_batch, IMAGE, IMAGE[None]),
+    partial(prf.DirectGoal, IMAGE),
+    partial(prf.WindowGoal, IMAGE),
+    partial(prf.MotionGoal, IMAGE),
 ]
+COMPARING = [function for function in FUNCTIONS if FUNCTIONS.index(function) not in (0, 3)]
 TOO_MANY = 10**30
 
 
@@ -35,7 +43,10 @@ TOO_MANY = 10**30
         ({"cell": 0.5, "cell_px": 8}, "got both cell and cell_px, expected one of them"),
         ({"block_cells": 0}, "block_cells: got 0, expected at least 1"),
         ({"block_cells": -2}, "block_cells: got -2, expected an int of at least 1"),
-        ({"norm": "L2"}, "norm: unknown variant `L2`, expected one of `none`, `l1`, `l1-sqrt`, `l2`, `l2-hys`"),
+        (
+            {"norm": "L2"},
+            "norm: unknown variant `L2`, expected one of `none`, `l1`, `l1-sqrt`, `l2`, `l2-hys`",
+        ),
         ({"cell_px": 25}, "a picture of 36x24 px is too small for 1x1 cells of 25 px"),
         ({"cell_px": 8, "block_cells": 4}, "a picture of 36x24 px is too small for 4x4 cells of 8 px"),
         ({"cell_px": 2**63, "block_cells": 2**63}, "a picture of 36x24 px is too small"),
@@ -64,7 +75,9 @@ def test_a_value_out_of_range(function: Callable[..., object], options: dict[str
     ],
 )
 @pytest.mark.parametrize("function", FUNCTIONS)
-def test_a_value_of_another_type(function: Callable[..., object], options: dict[str, Any], message: str) -> None:
+def test_a_value_of_another_type(
+    function: Callable[..., object], options: dict[str, Any], message: str
+) -> None:
     with pytest.raises(TypeError, match=message):
         function(**options)
 
@@ -77,8 +90,10 @@ def test_an_unknown_option_is_named(function: Callable[..., object]) -> None:
 
 def test_scales_are_named() -> None:
     scale: Any = "blocks"
-    for function in FUNCTIONS[1:]:
-        with pytest.raises(ValueError, match="scale: unknown variant `blocks`, expected one of `none`, `sqrt-blocks`"):
+    for function in COMPARING:
+        with pytest.raises(
+            ValueError, match="scale: unknown variant `blocks`, expected one of `none`, `sqrt-blocks`"
+        ):
             function(scale=scale)
 
 

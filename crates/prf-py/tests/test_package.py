@@ -31,12 +31,27 @@ def test_the_stubs_say_what_is_there() -> None:
     python("-m", "mypy.stubtest", "prf", "--mypy-config-file", "pyproject.toml")
 
 
-@pytest.mark.parametrize("name", ["hog", "reward", "distance"])
-def test_the_examples_of_functions_work(name: str) -> None:
-    function = getattr(prf, name)
-    example = doctest.DocTestParser().get_doctest(function.__doc__, {}, name, None, None)
+NATIVE = sorted(set(prf.__all__) - {"__version__", "Rect", "Match", "Score"})
+
+
+@pytest.mark.parametrize("name", NATIVE)
+def test_the_examples_of_functions_and_classes_work(name: str) -> None:
+    example = doctest.DocTestParser().get_doctest(getattr(prf, name).__doc__, {}, name, None, None)
     assert example.examples
     assert doctest.DocTestRunner().run(example).failed == 0
+
+
+@pytest.mark.parametrize("name", NATIVE)
+def test_everything_public_has_a_docstring(name: str) -> None:
+    item = getattr(prf, name)
+    members = (
+        [getattr(item, member) for member in vars(item) if not member.startswith("_")]
+        if isinstance(item, type)
+        else []
+    )
+    for documented in [item, *members]:
+        assert documented.__doc__
+        assert all(len(line) <= 120 for line in documented.__doc__.splitlines())
 
 
 def test_the_other_examples_work() -> None:

@@ -80,7 +80,7 @@ def test_every_value_has_the_bits_of_rust(kind: str, case: dict[str, Any], expec
             motion.update(frame)
         got = motion.history
     else:
-        state = prf.EmaState(case["lambda"])
+        state = prf.EmaState(decay=case["lambda"])
         for frame in frames_of(case):
             state.update(frame)
         got = state.values

@@ -29,6 +29,16 @@ use crate::values::{decimal, name_of, picture, repr};
 /// Direct and window goals score every frame by itself and may be shared by threads. A motion goal
 /// remembers the frames of an episode, so it belongs to one thread at a time: where another one is
 /// just using it, its methods raise RuntimeError rather than wait.
+///
+/// Examples
+/// --------
+/// >>> import numpy as np
+/// >>> import prf
+/// >>> goal = prf.DirectGoal(np.zeros((84, 84), np.uint8))
+/// >>> isinstance(goal, prf.Goal)
+/// True
+/// >>> goal
+/// DirectGoal(<84x84 px>, orientations=9, signed=False, cell=0.03, block_cells=1, norm='l2', scale='sqrt-blocks')
 #[pyclass(frozen, subclass, module = "prf")]
 pub(crate) struct Goal {
     parts: GoalParts,
