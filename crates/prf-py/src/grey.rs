@@ -2,7 +2,7 @@
 
 use numpy::{PyArray2, PyArray3, PyArrayMethods, PyUntypedArray, PyUntypedArrayMethods};
 use prf_core::{Error, Frame, FrameView, Resizer, luma};
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -102,14 +102,16 @@ fn wrong_shape(array: &Bound<'_, PyUntypedArray>) -> PyErr {
 }
 
 fn read_size(size: &Bound<'_, PyAny>) -> PyResult<[usize; 2]> {
-    let expected = format!("(height, width) of 1 to {MAX_SIDE} pixels");
-    let (height, width): (i64, i64) = size.extract().map_err(|_| {
-        let got = size.repr().map_or_else(|_| "something else".to_owned(), |got| got.to_string());
-        PyTypeError::new_err(format!("size: got {got}, expected {expected}"))
-    })?;
-    match [height, width].map(usize::try_from) {
-        [Ok(height @ 1..=MAX_SIDE), Ok(width @ 1..=MAX_SIDE)] => Ok([height, width]),
-        _ => Err(PyValueError::new_err(format!("size: got ({height}, {width}), expected {expected}"))),
+    let message = || -> PyResult<String> {
+        Ok(format!("size: got {}, expected (height, width) of 1 to {MAX_SIDE} pixels", size.repr()?))
+    };
+    match size.extract::<(i64, i64)>() {
+        Ok((height, width)) => match [height, width].map(usize::try_from) {
+            [Ok(height @ 1..=MAX_SIDE), Ok(width @ 1..=MAX_SIDE)] => Ok([height, width]),
+            _ => Err(PyValueError::new_err(message()?)),
+        },
+        Err(error) if error.is_instance_of::<PyOverflowError>(size.py()) => Err(PyValueError::new_err(message()?)),
+        Err(_) => Err(PyTypeError::new_err(message()?)),
     }
 }
 

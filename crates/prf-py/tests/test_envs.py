@@ -9,9 +9,10 @@ import subprocess
 import sys
 import threading
 import warnings
+from collections.abc import Callable
 from typing import Any
 
-import cloudpickle
+import cloudpickle  # type: ignore[import-untyped]
 import gymnasium as gym
 import numpy as np
 import pytest
@@ -26,7 +27,7 @@ from prf.envs import BreakoutEnv, FlappyBirdEnv, KobianFaceEnv, WorldEnv
 Env = gym.Env[Any, Any]
 
 IDS = ["PRF/Breakout-v0", "PRF/FlappyBird-v0", "PRF/KobianFace-v0"]
-CLASSES: list[type[WorldEnv]] = [BreakoutEnv, FlappyBirdEnv, KobianFaceEnv]
+CLASSES: list[Any] = [BreakoutEnv, FlappyBirdEnv, KobianFaceEnv]
 STATES = ["mirror", "ema", "motion"]
 REWARDS = ["perceptual", "variable"]
 
@@ -45,7 +46,7 @@ def play(env: Env, actions: list[int]) -> list[Any]:
 def actions_of(env: Env, count: int, seed: int = 5) -> list[int]:
     space = env.action_space
     assert isinstance(space, gym.spaces.Discrete)
-    return np.random.default_rng(seed).integers(0, int(space.n), count).tolist()
+    return [int(action) for action in np.random.default_rng(seed).integers(0, int(space.n), count)]
 
 
 def assert_equal(one: object, other: object) -> None:
@@ -223,7 +224,7 @@ def test_a_goal_that_was_given_keeps_its_own_episode() -> None:
 
 
 @pytest.mark.parametrize("cls", CLASSES)
-def test_steps_before_a_reset_and_after_closing_are_refused(cls: type[WorldEnv]) -> None:
+def test_steps_before_a_reset_and_after_closing_are_refused(cls: Any) -> None:
     env = cls(render_mode="rgb_array")
     with pytest.raises(ResetNeeded, match="has no episode yet: expected a reset before the first step"):
         env.step(0)
@@ -306,7 +307,7 @@ def test_expressions_are_named() -> None:
         WorldEnv("pong")  # type: ignore[arg-type]
 
 
-COPIES = {
+COPIES: dict[str, Callable[[Any], Any]] = {
     "pickle": lambda env: pickle.loads(pickle.dumps(env)),
     "cloudpickle": lambda env: cloudpickle.loads(cloudpickle.dumps(env)),
     "deepcopy": copy.deepcopy,

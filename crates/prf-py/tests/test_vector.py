@@ -75,7 +75,8 @@ def test_they_do_what_single_environments_do(id: str, options: dict[str, Any], m
     assert ends.sum() > 10
     assert bool(ends[0]) is ("Kobian" not in id)
     assert_equal(native.reset(), single.reset())
-    assert_equal(native.reset(seed=[5, None, 6, None, 5]), single.reset(seed=[5, None, 6, None, 5]))
+    seeds: Any = [5, None, 6, None, 5]
+    assert_equal(native.reset(seed=seeds), single.reset(seed=seeds))
     assert_equal(native.step(actions_of(native, 1)[0]), single.step(actions_of(native, 1)[0]))
 
 
@@ -90,9 +91,9 @@ def test_some_environments_can_be_reset_alone(mode: AutoresetMode) -> None:
         assert_equal(got, expected)
         mask |= (got[2] | got[3]) if mode is AutoresetMode.DISABLED else False
         if mask.any():
-            seed = [None, number, None, 7 * number] if number % 3 else None
+            seed: Any = [None, number, None, 7 * number] if number % 3 else None
             options = {"reset_mask": mask.copy()}
-            assert_equal(native.reset(seed=seed, options=options), single.reset(seed=seed, options=dict(options)))  # type: ignore[arg-type]
+            assert_equal(native.reset(seed=seed, options=options), single.reset(seed=seed, options=dict(options)))
             np.testing.assert_array_equal(options["reset_mask"], mask)
 
 
@@ -144,11 +145,11 @@ def test_frames_are_those_of_each_environment() -> None:
 
 
 def test_seeds_are_those_of_the_environments() -> None:
-    native, single = pair("PRF/FlappyBird-v0", AutoresetMode.NEXT_STEP, 3)
-    for envs in (native, single):
+    both: Any = pair("PRF/FlappyBird-v0", AutoresetMode.NEXT_STEP, 3)
+    for envs in both:
         envs.reset(seed=20)
-    assert native.np_random_seed == single.np_random_seed == (20, 21, 22)
-    states = [[generator.bit_generator.state for generator in envs.np_random] for envs in (native, single)]  # type: ignore[attr-defined]
+        assert envs.np_random_seed == (20, 21, 22)
+    states = [[generator.bit_generator.state for generator in envs.np_random] for envs in both]
     assert states[0] == states[1]
 
 
@@ -177,12 +178,12 @@ def test_results_do_not_depend_on_threads(preset: str, goal: str | None, threads
         numbers, flags = np.empty((2, count)), np.empty((2, count), np.bool_)
         seeds = np.arange(count, dtype=np.uint64)
         tasks.reset(np.ones(count, np.bool_), seeds, observations)
-        played = [observations.copy()]
-        restart = np.zeros(count, np.bool_)
+        played: list[NDArray[Any]] = [observations.copy()]
+        restart: NDArray[np.bool_] = np.zeros(count, np.bool_)
         for step in range(30):
             actions = (np.arange(count) * (step + 2)) % len(tasks.actions)
             ends = tasks.step(actions, restart, seeds, observations, *numbers, *flags)
-            restart = flags.any(axis=0)
+            restart = flags[0] | flags[1]
             assert ends == restart.sum()
             played += [observations.copy(), numbers.copy(), flags.copy()]
         results.append(played)

@@ -1,6 +1,6 @@
 """A reward from pictures for a vector environment."""
 
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 from gymnasium.logger import warn
@@ -12,13 +12,10 @@ from prf.envs.vector import read_mode
 from prf.wrappers.frames import Frames, Source
 from prf.wrappers.goals import Descriptor, make_goal
 
-Obs = TypeVar("Obs")
-Act = TypeVar("Act")
-
 KEY = "original_reward"
 
 
-class PerceptualReward(VectorWrapper[Obs, Act, Obs, Act, NDArray[Any]]):
+class PerceptualReward(VectorWrapper):
     """The reward of each environment's step is how much its frame after it looks like the goal, above 0 and at most 1.
 
     ``infos["original_reward"]`` is what the environments gave. A step in which an episode begins has the reward 0,
@@ -40,7 +37,7 @@ class PerceptualReward(VectorWrapper[Obs, Act, Obs, Act, NDArray[Any]]):
 
     def __init__(
         self,
-        env: VectorEnv[Obs, Act, NDArray[Any]],
+        env: VectorEnv[Any, Any, Any],
         goal: GoalLike,
         *,
         descriptor: Descriptor | None = None,
@@ -63,7 +60,7 @@ class PerceptualReward(VectorWrapper[Obs, Act, Obs, Act, NDArray[Any]]):
 
     def reset(
         self, *, seed: Any = None, options: dict[str, Any] | None = None
-    ) -> tuple[Obs, dict[str, Any]]:
+    ) -> tuple[Any, dict[str, Any]]:
         """Begins episodes of the environments and of their goals; or only those of ``options["reset_mask"]``."""
         # Some environments take the mask out of the options.
         mask = (options or {}).get("reset_mask", np.ones(self.num_envs, np.bool_))
@@ -75,8 +72,8 @@ class PerceptualReward(VectorWrapper[Obs, Act, Obs, Act, NDArray[Any]]):
         return observations, infos
 
     def step(
-        self, actions: Act
-    ) -> tuple[Obs, NDArray[Any], NDArray[Any], NDArray[Any], dict[str, Any]]:
+        self, actions: Any
+    ) -> tuple[Any, NDArray[Any], NDArray[Any], NDArray[Any], dict[str, Any]]:
         """Plays a step in each environment and rewards the frames after it."""
         observations, originals, terminated, truncated, infos = self.env.step(actions)
         over = terminated | truncated
@@ -98,7 +95,7 @@ class PerceptualReward(VectorWrapper[Obs, Act, Obs, Act, NDArray[Any]]):
         self._restarts = over if self._mode is AutoresetMode.NEXT_STEP else np.zeros_like(over)
         return observations, rewards, terminated, truncated, infos
 
-    def _look(self, observations: Obs) -> list[NDArray[np.uint8]]:
+    def _look(self, observations: Any) -> list[NDArray[np.uint8]]:
         pictures: Any = self.env.render() if self._frames.are_rendered else observations
         if not isinstance(pictures, (list, tuple, np.ndarray)) or len(pictures) != self.num_envs:
             raise TypeError(f"render(): got {type(pictures).__name__}, expected {self.num_envs} frames")
