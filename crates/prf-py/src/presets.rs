@@ -75,8 +75,9 @@ fn unknown(name: &str, fits: fn(&Preset) -> bool) -> PyErr {
 /// Examples
 /// --------
 /// >>> import prf
-/// >>> prf.preset_goal("flappy")
-/// WindowGoal(<20x38 px>, method='ccoeff-normed', orientations=9, signed=False, cell=0.4, block_cells=1, norm='none', scale='sqrt-blocks')
+/// >>> goal = prf.preset_goal("flappy")
+/// >>> type(goal).__name__, goal.norm
+/// ('WindowGoal', 'none')
 #[pyfunction]
 #[pyo3(signature = (name, goal=None))]
 pub(crate) fn preset_goal<'py>(

@@ -12,7 +12,7 @@ import warnings
 from collections.abc import Callable
 from typing import Any
 
-import cloudpickle  # type: ignore[import-untyped]
+import cloudpickle as untyped_cloudpickle  # type: ignore[import-untyped]
 import gymnasium as gym
 import numpy as np
 import pytest
@@ -150,7 +150,7 @@ def test_seeds_are_episodes_of_the_world() -> None:
 
 def test_episodes_without_a_seed_are_drawn_from_the_last_one() -> None:
     env = gym.make("PRF/FlappyBird-v0", state="mirror")
-    runs = []
+    runs: list[list[Any]] = []
     for _ in range(2):
         first = env.reset(seed=4)[0]
         runs.append([first, *(env.reset()[0] for _ in range(4))])
@@ -200,7 +200,7 @@ def test_goals_may_be_given_in_any_form() -> None:
     picture[10:20, 30:50] = 200
     own = prf.preset_goal("breakout")
     goals: list[Any] = [picture, prf.DirectGoal(picture, cell=own.cell, norm=own.norm)]
-    runs = []
+    runs: list[list[Any]] = []
     for goal in goals:
         env = gym.make("PRF/Breakout-v0", goal=goal)
         env.reset(seed=2)
@@ -307,6 +307,7 @@ def test_expressions_are_named() -> None:
         WorldEnv("pong")  # type: ignore[arg-type]
 
 
+cloudpickle: Any = untyped_cloudpickle
 COPIES: dict[str, Callable[[Any], Any]] = {
     "pickle": lambda env: pickle.loads(pickle.dumps(env)),
     "cloudpickle": lambda env: cloudpickle.loads(cloudpickle.dumps(env)),
@@ -381,7 +382,7 @@ def test_two_threads_can_not_use_an_environment_at_once() -> None:
     tasks = Tasks("kobian-happy-vrf", num_envs=256)
     thread = stepping(tasks, 256, 50)
     thread.start()
-    messages = set()
+    messages: set[str] = set()
     while thread.is_alive():
         try:
             tasks.__getstate__()

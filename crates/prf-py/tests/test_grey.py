@@ -31,9 +31,11 @@ def test_what_is_transparent_lies_on_black() -> None:
     np.testing.assert_array_equal(prf.to_grey(COLOURS), expected)
 
 
-@pytest.mark.parametrize("form", [np.asfortranarray, lambda array: array[::-1, ::2], lambda array: array.swapaxes(0, 1)])
-def test_arrays_may_have_any_form(form: Any) -> None:
-    other = form(COLOURS[..., :3])
+@pytest.mark.parametrize("form", ["columns first", "backwards and spaced", "transposed"])
+def test_arrays_may_have_any_form(form: str) -> None:
+    rgb = COLOURS[..., :3]
+    forms = {"columns first": np.asfortranarray(rgb), "backwards and spaced": rgb[::-1, ::2], "transposed": rgb.swapaxes(0, 1)}
+    other = forms[form]
     np.testing.assert_array_equal(prf.to_grey(other), prf.to_grey(np.ascontiguousarray(other)))
 
 
@@ -78,5 +80,6 @@ def test_pictures_are_brought_to_a_size_as_by_pillow(size: tuple[int, int]) -> N
     ],
 )
 def test_what_is_no_picture_is_refused(arguments: dict[str, Any], error: type[Exception], message: str) -> None:
+    given: dict[str, Any] = {"image": natural(9, 9), **arguments}
     with pytest.raises(error, match=message):
-        prf.to_grey(**{"image": natural(9, 9), **arguments})
+        prf.to_grey(**given)

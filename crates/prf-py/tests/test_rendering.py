@@ -24,8 +24,8 @@ def surface() -> pygame.Surface:
 
 
 def frame_of(env: Any) -> Any:
-    frame = env.render()
-    assert isinstance(frame, np.ndarray) and frame.dtype == np.uint8 and frame.shape[2] == 3
+    frame: Any = env.render()
+    assert type(frame) is np.ndarray and frame.dtype == np.uint8 and frame.shape[2] == 3
     return frame
 
 

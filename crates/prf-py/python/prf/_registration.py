@@ -1,6 +1,6 @@
 """Makes Gymnasium know the environments, which are imported when the first one is made."""
 
-from gymnasium.envs.registration import register, registry
+from gymnasium.envs.registration import register, registry  # pyright: ignore[reportUnknownVariableType]
 
 from prf._native import preset_limit_steps
 

@@ -2,7 +2,7 @@
 
 import operator
 from os import PathLike
-from typing import Literal, SupportsIndex, TypeAlias, TypedDict
+from typing import Literal, TypeAlias, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray

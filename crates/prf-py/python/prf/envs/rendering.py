@@ -34,11 +34,12 @@ class Window:
         """Shows a frame of shape ``(height, width, 3)`` and waits until it is time for the next one."""
         pygame = self._pygame
         height, width, _ = frame.shape
-        if self._screen is None or not pygame.display.get_init():
+        screen = self._screen if pygame.display.get_init() else None
+        if screen is None:
             pygame.display.init()
-            self._screen = pygame.display.set_mode((width, height))
+            screen = self._screen = pygame.display.set_mode((width, height))
             pygame.display.set_caption(self._title)
-        self._screen.blit(pygame.image.frombuffer(frame, (width, height), "RGB"), (0, 0))
+        screen.blit(pygame.image.frombuffer(frame, (width, height), "RGB"), (0, 0))
         pygame.event.pump()
         self._clock.tick(self._fps)
         pygame.display.flip()

@@ -214,18 +214,21 @@ class WorldVectorEnv(VectorEnv[Observations, Actions, NDArray[Any]]):
             return [None] * self.num_envs
         if isinstance(seed, int):
             return range(seed, seed + self.num_envs)
-        if not isinstance(seed, Sequence):
-            raise TypeError(f"seed: got {type(seed).__name__}, expected an int, a sequence of them or None")
-        if len(seed) != self.num_envs:
-            raise ValueError(f"seed: got {len(seed)} of them, expected one for each of {self.num_envs} environments")
-        return seed
+        try:
+            seeds = list(seed)
+        except TypeError:
+            got = type(seed).__name__
+            raise TypeError(f"seed: got {got}, expected an int, a sequence of them or None") from None
+        if len(seeds) != self.num_envs:
+            raise ValueError(f"seed: got {len(seeds)} of them, expected one for each of {self.num_envs} environments")
+        return seeds
 
     def _read_mask(self, options: dict[str, Any] | None) -> NDArray[np.bool_]:
         if options is None or "reset_mask" not in options:
             return self._all
-        mask = options["reset_mask"]
         expected = f"expected an array of {self.num_envs} bools"
-        if not isinstance(mask, np.ndarray):
+        mask: Any = options["reset_mask"]
+        if type(mask) is not np.ndarray:
             raise TypeError(f"reset_mask: got {type(mask).__name__}, {expected}")
         if mask.dtype != np.bool_:
             raise TypeError(f"reset_mask: got an array of {mask.dtype}, {expected}")
@@ -240,11 +243,9 @@ class WorldVectorEnv(VectorEnv[Observations, Actions, NDArray[Any]]):
         expected = f"expected {self.num_envs} integers"
         if array.shape != (self.num_envs,):
             raise ValueError(f"actions: got shape {array.shape}, {expected}")
-        if array.dtype == np.int64:
-            return np.ascontiguousarray(array)
         if array.dtype.kind not in "iu":
             raise TypeError(f"actions: got an array of {array.dtype}, {expected}")
-        return array.astype(np.int64)
+        return np.ascontiguousarray(array, np.int64)
 
 
 class BreakoutVectorEnv(WorldVectorEnv):

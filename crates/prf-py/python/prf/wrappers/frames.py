@@ -3,7 +3,7 @@
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
-from gymnasium import Space, spaces
+from gymnasium import spaces
 from numpy.typing import NDArray
 
 from prf._native import to_grey
@@ -18,7 +18,7 @@ class Frames:
     """Turns what an environment renders or lets see into grey frames of one size."""
 
     def __init__(
-        self, source: Source, size: Size | None, render_mode: str | None, observation_space: Space[Any]
+        self, source: Source, size: Size | None, render_mode: str | None, observation_space: Any
     ) -> None:
         choice("source", source, ("render", "observation"))
         self.are_rendered = source == "render"
@@ -31,17 +31,22 @@ class Frames:
         if not self.are_rendered:
             check_observation_space(observation_space)
 
-    def grey(self, frame: object) -> NDArray[np.uint8]:
+    def grey(self, frame: Any) -> NDArray[np.uint8]:
         """The frame in grey."""
-        if not isinstance(frame, np.ndarray):
+        if not is_array(frame):
             what = "render()" if self.are_rendered else "observation"
             raise TypeError(f"{what}: got {type(frame).__name__}, expected an array of shape {SHAPES}")
         return to_grey(frame, size=self._size)
 
 
-def check_observation_space(space: Space[Any]) -> None:
+def is_array(value: object) -> bool:
+    """Whether it is an array of any type."""
+    return isinstance(value, np.ndarray)
+
+
+def check_observation_space(space: Any) -> None:
     """Refuses observations that are no pictures."""
-    is_box = isinstance(space, spaces.Box) and space.dtype == np.uint8
-    shape = space.shape or ()
+    is_box = space.dtype == np.uint8 and isinstance(space, spaces.Box)
+    shape: tuple[int, ...] = space.shape or ()
     if not is_box or len(shape) not in (2, 3) or (len(shape) == 3 and shape[2] not in (1, 3, 4)):
         raise ValueError(f"env: got observations of {space}, expected a Box of uint8 with shape {SHAPES}")

