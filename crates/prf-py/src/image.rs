@@ -164,7 +164,7 @@ fn check_shape<R: Rank>(name: &str, shape: &[usize]) -> PyResult<()> {
     if Some(shape.len()) == R::NDIM && shape[shape.len() - 2..].iter().all(is_side) {
         return Ok(());
     }
-    let hint = if matches!(shape, [_, _, 3 | 4]) { "; turn colours to grey first" } else { "" };
+    let hint = if matches!(shape, [_, _, 3 | 4]) { "; turn colours to grey first, with prf.to_grey" } else { "" };
     let got = shape.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
     let expected = format!("{} with sides of 1 to {MAX_SIDE}", R::SHAPE);
     Err(PyValueError::new_err(format!("{name}: got shape ({got}), expected {expected}{hint}")))
