@@ -6,7 +6,6 @@ FOLDER = Path(__file__).parent
 
 
 def test_types_are_strict() -> None:
-    mypy = subprocess.run(
-        [sys.executable, "-m", "mypy", "--strict", FOLDER.name], cwd=FOLDER.parent, capture_output=True, text=True
-    )
-    assert mypy.returncode == 0, mypy.stdout + mypy.stderr
+    mypy = [sys.executable, "-m", "mypy", "--strict", FOLDER.name]
+    ended = subprocess.run(mypy, cwd=FOLDER.parent, capture_output=True, text=True)
+    assert ended.returncode == 0, ended.stdout + ended.stderr

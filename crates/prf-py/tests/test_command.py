@@ -37,7 +37,10 @@ def records(text: str) -> list[dict[str, Any]]:
     ("options", "arguments"),
     [
         ([], {}),
-        (["--cell-px=4", "--block-cells=2", "--norm=l2-hys"], {"cell_px": 4, "block_cells": 2, "norm": "l2-hys"}),
+        (
+            ["--cell-px=4", "--block-cells=2", "--norm=l2-hys"],
+            {"cell_px": 4, "block_cells": 2, "norm": "l2-hys"},
+        ),
         (["--cell=0.1", "--orientations=5", "--signed"], {"cell": 0.1, "orientations": 5, "signed": True}),
         (["--scale=sqrt-features", "--norm=l1-sqrt"], {"scale": "sqrt-features", "norm": "l1-sqrt"}),
     ],
@@ -94,7 +97,9 @@ def test_what_is_lost_is_told_and_ends_with_3(folder: Path) -> None:
         (["score", "goal.png", "goal.png", "--cell=-1"], 2, "error: --cell: got -1"),
     ],
 )
-def test_failure_ends_with_1_and_misuse_with_2(folder: Path, arguments: list[str], code: int, told: str) -> None:
+def test_failure_ends_with_1_and_misuse_with_2(
+    folder: Path, arguments: list[str], code: int, told: str
+) -> None:
     ended = run(folder, *arguments)
     assert (ended.returncode, ended.stdout) == (code, "")
     assert told in ended.stderr

@@ -10,7 +10,7 @@ from elftools.elf.elffile import ELFFile
 
 from prf import _native
 
-# The C library in its parts, and what unwinds a panic: all Linux machines for which there are wheels have them.
+# The C library in its parts, and what unwinds a panic: every Linux that the wheels are for has them.
 EVERYWHERE = {
     "ld-linux-aarch64.so.1",
     "ld-linux-x86-64.so.2",

@@ -9,7 +9,7 @@ import sys
 from prf._native import main
 
 if __name__ == "__main__":
-    # Python would note Ctrl-C and wait for the command to end; unless it is ignored, it is to end the command.
+    # Python would note Ctrl-C and wait for the end. Unless it is ignored, it is to end the command.
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
         signal.signal(signal.SIGINT, signal.SIG_DFL)
     sys.exit(main(["python -m prf", *sys.argv[1:]]))
