@@ -7,7 +7,7 @@ use std::thread;
 use prf_core::{Frame, Goal};
 
 use crate::bytes::Reader;
-use crate::{Environment, Error, Spec, Status, Task, TaskConfig, registry};
+use crate::{Error, Spec, Status, Task, TaskConfig, registry};
 
 /// Marks the state of tasks side by side and the version of its layout.
 const TAG: &[u8] = b"vector1";
@@ -47,8 +47,7 @@ const SHARE: usize = 2;
 pub struct VectorTask {
     lanes: Vec<Lane>,
     threads: usize,
-    /// A world for pictures of other sizes than the mirror frame's, since worlds may remember what they drew last.
-    stage: Box<dyn Environment>,
+    spec: Spec,
 }
 
 /// What to do with one of the tasks.
@@ -105,7 +104,7 @@ impl VectorTask {
             // Asking for the cores reads files.
             most => thread::available_parallelism().map_or(1, NonZero::get).min(most),
         };
-        Ok(VectorTask { lanes, threads, stage: registry::make(&config.env)? })
+        Ok(VectorTask { lanes, threads, spec: *registry::make(&config.env)?.spec() })
     }
 
     /// The same with at most this number of threads; 0 counts as 1.
@@ -116,7 +115,7 @@ impl VectorTask {
 
     /// The world's fixed facts.
     pub fn spec(&self) -> &Spec {
-        self.stage.spec()
+        &self.spec
     }
 
     /// How many tasks there are.
@@ -127,7 +126,7 @@ impl VectorTask {
     /// Does with each task what its command says.
     ///
     /// # Errors
-    /// As [`Environment::step`], of the first task that can't do it; no task has changed then.
+    /// As [`Task::step`], of the first task that can't do it; no task has changed then.
     ///
     /// # Panics
     /// If `commands` or a slice of `results` has another length than there are tasks.
@@ -163,15 +162,8 @@ impl VectorTask {
     ///
     /// # Panics
     /// If there is no such task.
-    pub fn draw_into(&mut self, index: usize, frame: &mut Frame) {
-        let world = self.lanes[index].task.environment();
-        let spec = world.spec();
-        if [spec.width, spec.height] == [frame.width(), frame.height()] {
-            world.draw_into(frame);
-            return;
-        }
-        self.stage.load_state(&world.save_state()).expect("the state of a world made alike");
-        self.stage.draw_into(frame);
+    pub fn draw_into(&self, index: usize, frame: &mut Frame) {
+        self.lanes[index].task.environment().draw_into(frame);
     }
 
     /// Everything that decides how the episodes go on, to the last bit.

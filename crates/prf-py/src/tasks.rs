@@ -211,7 +211,7 @@ impl Tasks {
         let frames = frames.as_slice_mut()?;
         let mut inner = self.inner.lock()?;
         let Inner { tasks, canvas, .. } = &mut *inner;
-        py.detach(|| {
+        py.detach(move || {
             if [canvas.height(), canvas.width()] != [height, width] {
                 *canvas = Frame::new(width, height);
             }

@@ -9,7 +9,8 @@ import subprocess
 import sys
 import threading
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Generator
+from contextlib import contextmanager, suppress
 from typing import Any
 
 import cloudpickle as untyped_cloudpickle  # type: ignore[import-untyped]
@@ -357,62 +358,58 @@ def test_environments_live_in_other_processes(context: str) -> None:
         apart.close()
 
 
-def stepping(tasks: Tasks, count: int, steps: int) -> threading.Thread:
-    """A thread that steps these tasks and is let in."""
+@contextmanager
+def stepping(tasks: Tasks, count: int) -> Generator[None, None, None]:
+    """Steps these tasks in another thread meanwhile."""
     arrays: list[Any] = [np.empty((count, 84, 84), np.uint8), np.empty(count), np.empty(count)]
     arrays += [np.empty(count, np.bool_), np.empty(count, np.bool_)]
     seeds, restart = np.arange(count, dtype=np.uint64), np.ones(count, np.bool_)
     restart[::2] = False
     tasks.reset(np.ones(count, np.bool_), seeds, arrays[0])
     actions = np.zeros(count, np.int64)
+    done = threading.Event()
 
     def run() -> None:
-        for _ in range(steps):
-            while True:
-                try:
-                    tasks.step(actions, restart, seeds, *arrays)
-                except RuntimeError:
-                    continue
-                break
+        while not done.is_set():
+            with suppress(RuntimeError):
+                tasks.step(actions, restart, seeds, *arrays)
 
-    return threading.Thread(target=run)
+    thread = threading.Thread(target=run)
+    thread.start()
+    try:
+        yield
+    finally:
+        done.set()
+        thread.join()
 
 
 def test_two_threads_can_not_use_an_environment_at_once() -> None:
-    tasks = Tasks("kobian-happy-vrf", num_envs=256)
-    thread = stepping(tasks, 256, 50)
-    thread.start()
-    messages: set[str] = set()
-    while thread.is_alive():
-        try:
+    tasks = Tasks("kobian-happy-kprf", num_envs=128, goal=prf.preset_goal("kobian-happy-kprf"))
+    message = "while another thread is using this object, expected one at a time"
+    with stepping(tasks, 128), pytest.raises(RuntimeError, match=message):
+        while True:
             tasks.__getstate__()
-        except RuntimeError as error:
-            messages.add(str(error))
-    thread.join()
-    assert len(messages) == 1
-    assert "while another thread is using this object, expected one at a time" in messages.pop()
     tasks.__getstate__()
 
 
 def test_a_fork_while_another_thread_steps_does_not_wait_forever() -> None:
-    tasks = Tasks("kobian-happy-vrf", num_envs=256)
-    thread = stepping(tasks, 256, 200)
-    thread.start()
-    for _ in range(10):
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", DeprecationWarning)
-            child = os.fork()
-        if child == 0:
-            signal.alarm(20)  # ends the process if it waits
-            try:
+    tasks = Tasks("kobian-happy-kprf", num_envs=128, goal=prf.preset_goal("kobian-happy-kprf"))
+    with stepping(tasks, 128):
+        for _ in range(10):
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore", DeprecationWarning)
+                child = os.fork()
+            if child == 0:
+                signal.alarm(20)  # ends the process if it waits
+                status = 1
                 try:
-                    tasks.__getstate__()
-                except RuntimeError:
-                    pass
-                env = BreakoutEnv()
-                env.reset(seed=1)
-                env.step(1)
-            finally:
-                os._exit(0)
-        assert os.waitpid(child, 0)[1] == 0
-    thread.join()
+                    with suppress(RuntimeError):
+                        tasks.__getstate__()
+                    for cls in CLASSES:
+                        env = cls()
+                        env.reset(seed=1)
+                        env.step(1)
+                    status = 0
+                finally:
+                    os._exit(status)
+            assert os.waitpid(child, 0)[1] == 0

@@ -9,8 +9,8 @@ from prf._extras import require_gymnasium
 
 require_gymnasium("prf.envs")
 
-from prf.envs.single import BreakoutEnv, FlappyBirdEnv, KobianFaceEnv, WorldEnv  # noqa: E402
-from prf.envs.vector import (  # noqa: E402
+from prf.envs.single import BreakoutEnv, FlappyBirdEnv, KobianFaceEnv, WorldEnv
+from prf.envs.vector import (
     BreakoutVectorEnv,
     FlappyBirdVectorEnv,
     KobianFaceVectorEnv,

@@ -7,7 +7,7 @@ from prf._extras import require_gymnasium
 
 require_gymnasium("prf.wrappers")
 
-from prf.wrappers import vector  # noqa: E402
-from prf.wrappers.single import PerceptualReward  # noqa: E402
+from prf.wrappers import vector
+from prf.wrappers.single import PerceptualReward
 
 __all__ = ["PerceptualReward", "vector"]

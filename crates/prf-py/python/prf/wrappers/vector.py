@@ -45,7 +45,7 @@ class PerceptualReward(VectorWrapper):
         size: Size | None = None,
     ) -> None:
         super().__init__(env)
-        self._frames = Frames(source, size, env.render_mode, getattr(env, "single_observation_space"))  # noqa: B009
+        self._frames = Frames(source, size, env.render_mode, getattr(env, "single_observation_space"))
         self._mode = autoreset_mode(env)
         if self._mode is AutoresetMode.SAME_STEP and self._frames.are_rendered:
             raise ValueError(
