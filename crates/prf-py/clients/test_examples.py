@@ -54,7 +54,7 @@ def test_a_pendulum_is_rewarded_by_a_picture() -> None:
 
 
 def test_the_notebook_runs_from_top_to_bottom() -> None:
-    notebook = nbformat.read(EXAMPLES / "rewards_from_pictures.ipynb", as_version=4)
+    notebook = nbformat.read(EXAMPLES / "rewards_from_pictures.ipynb", as_version=4)  # type: ignore[no-untyped-call]
     NotebookClient(notebook, timeout=300, kernel_name="python3", resources={"metadata": {"path": str(EXAMPLES)}}).execute()
     said = [output.text for cell in notebook.cells for output in cell.get("outputs", []) if output.output_type == "stream"]
     assert "rank correlation" in "".join(said)

@@ -18,6 +18,14 @@ from skimage.io import imsave
 from terminal import PATIENCE_S, Terminal, wait_until
 
 
+@pytest.fixture(autouse=True)
+def ctrl_c() -> Iterator[None]:
+    """Ctrl-C has its meaning, also where these tests run in the background of a script, whose children ignore it."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
     imsave(tmp_path / "goal.png", natural(40, 53), check_contrast=False)
