@@ -11,6 +11,7 @@ import pytest
 from numpy.typing import NDArray
 from pictures import natural
 from refusal import refuse
+from untyped import numpy_ma
 
 import prf
 
@@ -122,7 +123,7 @@ def test_arrays_of_subclasses_work_unless_they_are_masked(taker: str, tmp_path: 
     mapped[:] = IMAGE
     for array in (mapped, IMAGE.view(Subclass)):
         np.testing.assert_array_equal(call(array), call(IMAGE))
-    for masked in (np.ma.masked_less(IMAGE, 9), np.ma.array(IMAGE)):
+    for masked in (numpy_ma.masked_less(IMAGE, 9), numpy_ma.array(IMAGE)):
         refuse(lambda: call(masked), TypeError, f"{name}: got a masked array, expected a plain one")
 
 

@@ -9,6 +9,7 @@ import pytest
 from numpy.typing import NDArray
 from pictures import Bytes, moving, natural
 from refusal import refuse
+from untyped import numpy_ma
 
 import prf
 
@@ -90,7 +91,7 @@ def test_what_is_no_batch_is_refused(name: str) -> None:
     refuse(
         lambda: batch(FRAMES.astype(np.int32)), TypeError, f"{given}: got an array of int32, expected uint8"
     )
-    refuse(lambda: batch(np.ma.masked_less(FRAMES, 9)), TypeError, f"{given}: got a masked array")
+    refuse(lambda: batch(numpy_ma.masked_less(FRAMES, 9)), TypeError, f"{given}: got a masked array")
     refuse(lambda: batch(FRAMES, thread=2), TypeError, "got an unexpected keyword argument 'thread'")
     for threads in (0, 1025):
         refuse(

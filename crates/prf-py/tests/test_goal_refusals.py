@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from pictures import moving
 from refusal import refuse
+from untyped import numpy_ma
 
 import prf
 
@@ -28,7 +29,7 @@ goals = pytest.mark.parametrize("name", GOALS)
         ([[1, 2]], TypeError, "frame: got list, expected a NumPy array of shape (height, width)"),
         ("frame.png", TypeError, "frame: got str, expected a NumPy array of shape (height, width)"),
         (FRAMES[0] / 255, TypeError, "frame: got an array of float64, expected uint8; for floats"),
-        (np.ma.masked_less(FRAMES[0], 9), TypeError, "frame: got a masked array, expected a plain one"),
+        (numpy_ma.masked_less(FRAMES[0], 9), TypeError, "frame: got a masked array, expected a plain one"),
         (FRAMES, ValueError, "frame: got shape (12, 84, 84), expected (height, width)"),
         (
             FRAMES[0][:0],
@@ -93,7 +94,7 @@ def test_a_goal_by_itself_can_not_be_made() -> None:
             ValueError,
             "goal: got shape (9, 9, 9, 3), expected (height, width)",
         ),
-        (np.ma.masked_less(np.ones((9, 9), np.uint8), 2), TypeError, "goal: got a masked array"),
+        (numpy_ma.masked_less(np.ones((9, 9), np.uint8), 2), TypeError, "goal: got a masked array"),
     ],
 )
 def test_what_is_no_goal_is_refused(kind: Any, goal: Any, error: type[Exception], message: str) -> None:
