@@ -37,6 +37,7 @@ def make_model(algorithm: str, env: VecEnv, seed: int, steps: int) -> BaseAlgori
         env,
         buffer_size=20_000,
         learning_starts=min(1_000, steps // 2),
+        gradient_steps=env.num_envs,  # an update every four steps, however many environments there are
         exploration_fraction=0.5,
         target_update_interval=500,
         seed=seed,
