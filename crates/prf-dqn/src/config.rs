@@ -4,6 +4,7 @@ use prf_core::Error as ParamError;
 use prf_envs::{EnvConfig, RewardConfig, StateConfig, TaskConfig};
 use serde::{Deserialize, Serialize};
 
+use crate::compute::Precision;
 use crate::learner::LearnerSettings;
 
 /// Everything that decides a training run. The same `RunConfig` on the same machine with the same
@@ -75,6 +76,10 @@ pub struct TrainConfig {
     /// Let the online network choose the action whose target value is bootstrapped (double DQN).
     #[serde(default = "default_double")]
     pub double: bool,
+    /// What the network computes in; parameters are learned in f32 with each. `auto` becomes `bf16` or `f32`, by what the
+    /// machine is good at, when a run begins.
+    #[serde(default)]
+    pub precision: Precision,
     /// CPU threads of libtorch; 0 takes every core. Part of what makes a run repeatable.
     #[serde(default)]
     pub threads: usize,

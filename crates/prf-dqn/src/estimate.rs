@@ -6,6 +6,7 @@ use prf_core::Goal;
 use prf_envs::Task;
 use prf_envs::rng::stream;
 
+use crate::compute::Compute;
 use crate::config::RunConfig;
 use crate::error::Result;
 use crate::learner::Learner;
@@ -37,7 +38,8 @@ impl Estimate {
         let mut task = Task::new(&config.task(), goal)?;
         let architecture = architecture(&task)?;
         let frame_len = task.observation().len();
-        let mut learner = Learner::new(architecture, train.learner(), device, &mut stream(0, "estimate", 0))?;
+        let compute = Compute { device, precision: train.precision };
+        let mut learner = Learner::new(architecture, train.learner(), compute, &mut stream(0, "estimate", 0))?;
 
         let count = train.batch_size;
         let batch = Batch {

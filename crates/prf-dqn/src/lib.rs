@@ -4,6 +4,7 @@
 //! that of Mnih et al. (Nature, 2015) on a single 84×84 picture, as in the paper's section "Experiments and results".
 
 pub mod checkpoint;
+pub mod compute;
 pub mod config;
 pub mod device;
 pub mod error;

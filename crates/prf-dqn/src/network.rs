@@ -3,6 +3,7 @@
 use prf_envs::rng::ChaCha8Rng;
 use tch::{Device, Kind, Tensor, no_grad};
 
+use crate::compute::Compute;
 use crate::error::Result;
 
 /// One convolution: output channels, kernel side, stride.
@@ -49,16 +50,54 @@ impl Architecture {
 #[derive(Debug)]
 pub struct QNetwork {
     architecture: Architecture,
-    flat: Tensor,
-    /// Views of `flat`, leaves of the autograd graph.
+    parameters: Parameters,
+    /// Views of the parameters as they are computed with, leaves of the autograd graph.
     leaves: Vec<Tensor>,
+}
+
+/// A network's parameters, shape [n].
+#[derive(Debug)]
+pub struct Parameters {
+    /// As they are learned and saved, f32.
+    pub flat: Tensor,
+    /// The same, rounded to the numbers that are computed with, if these are others.
+    pub rounded: Option<Tensor>,
+}
+
+impl Parameters {
+    pub(crate) fn new(values: &[f32], compute: Compute) -> Result<Self> {
+        let flat = Tensor::f_from_slice(values)?.f_to_device(compute.device)?;
+        let rounded = match compute.kind() {
+            Kind::Float => None,
+            other => Some(flat.f_to_kind(other)?),
+        };
+        Ok(Self { flat, rounded })
+    }
+
+    /// What is computed with.
+    fn computed(&self) -> &Tensor {
+        self.rounded.as_ref().unwrap_or(&self.flat)
+    }
+
+    fn copy_from(&mut self, other: &Self) -> Result<()> {
+        self.flat.f_copy_(&other.flat)?;
+        self.round()
+    }
+
+    /// Brings `rounded` up to date.
+    pub(crate) fn round(&mut self) -> Result<()> {
+        if let Some(rounded) = &mut self.rounded {
+            rounded.f_copy_(&self.flat)?;
+        }
+        Ok(())
+    }
 }
 
 impl QNetwork {
     /// A network whose weights are uniform in ±√(6/fan-in) (He et al., 2015), drawn from `rng`, and whose biases are 0.
     ///
     /// This keeps the scale of the activations from layer to layer, which PyTorch's default, 2.4 times smaller, lets fade.
-    pub fn new(architecture: Architecture, device: Device, rng: &mut ChaCha8Rng) -> Result<Self> {
+    pub fn new(architecture: Architecture, compute: Compute, rng: &mut ChaCha8Rng) -> Result<Self> {
         let mut values = Vec::new();
         for (name, shape) in architecture.parameters() {
             let count = shape.iter().product::<i64>();
@@ -66,25 +105,25 @@ impl QNetwork {
             let bound = if name.ends_with(".weight") { (6.0 / fan_in as f32).sqrt() } else { 0.0 };
             values.extend((0..count).map(|_| bound * (2.0 * prf_envs::rng::unit_f32(rng) - 1.0)));
         }
-        Self::from_flat(architecture, &values, device)
+        Self::from_flat(architecture, &values, compute)
     }
 
     /// A network with the given parameters, in the order of [`Architecture::parameters`].
-    pub fn from_flat(architecture: Architecture, values: &[f32], device: Device) -> Result<Self> {
-        let flat = Tensor::f_from_slice(values)?.f_to_device(device)?;
+    pub fn from_flat(architecture: Architecture, values: &[f32], compute: Compute) -> Result<Self> {
+        let parameters = Parameters::new(values, compute)?;
         let mut leaves = Vec::new();
         let mut offset = 0;
         for (_, shape) in architecture.parameters() {
             let count = shape.iter().product::<i64>();
-            let leaf = flat.f_narrow(0, offset, count)?.f_view(&shape[..])?.f_detach()?.f_set_requires_grad(true)?;
-            leaves.push(leaf);
+            let part = parameters.computed().f_narrow(0, offset, count)?.f_view(&shape[..])?;
+            leaves.push(part.f_detach()?.f_set_requires_grad(true)?);
             offset += count;
         }
         debug_assert_eq!(offset, values.len() as i64);
-        Ok(Self { architecture, flat, leaves })
+        Ok(Self { architecture, parameters, leaves })
     }
 
-    /// Q-values of a batch: pictures as f32 in [0, 1], shape [n, 1, h, w], to values of shape [n, actions].
+    /// Q-values of a batch: pictures in [0, 1], shape [n, 1, h, w], to values of shape [n, actions], f32.
     pub fn forward(&self, pictures: &Tensor) -> Result<Tensor> {
         let mut x = pictures.shallow_clone();
         let mut leaves = self.leaves.chunks_exact(2);
@@ -97,7 +136,7 @@ impl QNetwork {
             unreachable!("two fully connected layers")
         };
         x = x.f_linear(hidden_weight, Some(hidden_bias))?.f_relu_()?;
-        Ok(x.f_linear(output_weight, Some(output_bias))?)
+        Ok(x.f_linear(output_weight, Some(output_bias))?.f_to_kind(Kind::Float)?)
     }
 
     /// Q-values of `count` pictures of h × w bytes each: count × actions values, row by row, outside the autograd graph.
@@ -105,18 +144,17 @@ impl QNetwork {
         no_grad(|| tensor_to_vec(&self.forward(&self.pictures(bytes, count)?)?))
     }
 
-    /// `count` pictures of h × w bytes each as the network's input, f32 in [0, 1], shape [count, 1, h, w].
+    /// `count` pictures of h × w bytes each as the network's input, in [0, 1], shape [count, 1, h, w].
     pub fn pictures(&self, bytes: &[u8], count: usize) -> Result<Tensor> {
         let [height, width] = self.architecture.input;
         let bytes =
             Tensor::f_from_slice(bytes)?.f_to_device(self.device())?.f_view([count as i64, 1, height, width])?;
-        Ok(bytes.f_to_kind(Kind::Float)?.f_mul_scalar_(1.0 / 255.0)?)
+        Ok(bytes.f_to_kind(self.parameters.computed().kind())?.f_mul_scalar_(1.0 / 255.0)?)
     }
 
     /// Takes over the parameters of another network of the same architecture.
     pub fn copy_from(&mut self, other: &Self) -> Result<()> {
-        no_grad(|| self.flat.f_copy_(&other.flat))?;
-        Ok(())
+        no_grad(|| self.parameters.copy_from(&other.parameters))
     }
 
     /// Shape of the network.
@@ -126,7 +164,7 @@ impl QNetwork {
 
     /// Where the parameters lie.
     pub fn device(&self) -> Device {
-        self.flat.device()
+        self.parameters.flat.device()
     }
 
     /// The leaves to differentiate for, in the order of the flat tensor.
@@ -134,14 +172,14 @@ impl QNetwork {
         &self.leaves
     }
 
-    /// The parameters that an optimiser changes, shape [n].
-    pub fn flat_mut(&mut self) -> &mut Tensor {
-        &mut self.flat
+    /// The parameters, for an optimiser.
+    pub fn parameters_mut(&mut self) -> &mut Parameters {
+        &mut self.parameters
     }
 
     /// A copy of the parameters, in the order of [`Architecture::parameters`].
     pub fn to_vec(&self) -> Result<Vec<f32>> {
-        tensor_to_vec(&self.flat)
+        tensor_to_vec(&self.parameters.flat)
     }
 }
 

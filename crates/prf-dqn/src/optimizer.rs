@@ -3,7 +3,7 @@
 use tch::{Device, Kind, Tensor, no_grad};
 
 use crate::error::Result;
-use crate::network::tensor_to_vec;
+use crate::network::{Parameters, tensor_to_vec};
 
 mod fused;
 
@@ -46,23 +46,26 @@ impl Adam {
         Ok((tensor_to_vec(&self.first)?, tensor_to_vec(&self.second)?, self.steps))
     }
 
-    /// One step: `parameters` (flat, shape [n]) move against `gradients`, which together have n elements in the same order.
-    pub(crate) fn step(&mut self, parameters: &mut Tensor, gradients: &[Tensor], learning_rate: f64) -> Result<()> {
+    /// One step: `parameters` move against `gradients`, which together have as many elements in the same order.
+    pub(crate) fn step(&mut self, parameters: &mut Parameters, gradients: &[Tensor], learning_rate: f64) -> Result<()> {
         self.steps += 1;
         let size = StepSize {
             rate: learning_rate / (1.0 - BETA1.powf(self.steps as f64)),
             second_correction: (1.0 - BETA2.powf(self.steps as f64)).sqrt(),
         };
-        if parameters.device() == Device::Cpu {
+        if parameters.flat.device() == Device::Cpu {
             fused::step(parameters, &mut self.first, &mut self.second, gradients, size)
         } else {
-            no_grad(|| self.step_by_tensors(parameters, gradients, size))
+            no_grad(|| {
+                self.step_by_tensors(&mut parameters.flat, gradients, size)?;
+                parameters.round()
+            })
         }
     }
 
     fn step_by_tensors(&mut self, parameters: &mut Tensor, gradients: &[Tensor], size: StepSize) -> Result<()> {
         let flat: Vec<Tensor> = gradients.iter().map(|gradient| gradient.f_flatten(0, -1)).collect::<Result<_, _>>()?;
-        let gradient = Tensor::f_cat(&flat, 0)?;
+        let gradient = Tensor::f_cat(&flat, 0)?.f_to_kind(Kind::Float)?;
         let _ = self.first.f_lerp_(&gradient, 1.0 - BETA1)?;
         let _ = self.second.f_mul_scalar_(BETA2)?.f_addcmul_(&gradient, &(&gradient * (1.0 - BETA2)))?;
         let denominator = self.second.f_sqrt()?.f_div_scalar_(size.second_correction)?.f_add_scalar_(EPSILON)?;
@@ -74,14 +77,21 @@ impl Adam {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::compute::{Compute, Precision};
 
     fn parameters_after(steps: &[(Vec<f32>, f64)], fused: bool) -> (Vec<f32>, Adam) {
+        let (parameters, adam) = computed_after(steps, fused, Compute::PLAIN);
+        assert!(parameters.rounded.is_none());
+        (tensor_to_vec(&parameters.flat).expect("values"), adam)
+    }
+
+    fn computed_after(steps: &[(Vec<f32>, f64)], fused: bool, compute: Compute) -> (Parameters, Adam) {
         let count = steps[0].0.len();
-        let mut parameters = Tensor::from_slice(&vec![1.0f32; count]);
+        let mut parameters = Parameters::new(&vec![1.0f32; count], compute).expect("parameters");
         let mut adam = Adam::new(count, Device::Cpu).expect("adam");
         for (gradient, rate) in steps {
             let (head, tail) = gradient.split_at(count / 3);
-            let parts = [Tensor::from_slice(head), Tensor::from_slice(tail)];
+            let parts = [head, tail].map(|part| Tensor::from_slice(part).to_kind(compute.kind()));
             if fused {
                 adam.step(&mut parameters, &parts, *rate).expect("step");
             } else {
@@ -90,10 +100,11 @@ mod tests {
                     rate: rate / (1.0 - BETA1.powf(adam.steps as f64)),
                     second_correction: (1.0 - BETA2.powf(adam.steps as f64)).sqrt(),
                 };
-                adam.step_by_tensors(&mut parameters, &parts, size).expect("step");
+                adam.step_by_tensors(&mut parameters.flat, &parts, size).expect("step");
+                parameters.round().expect("rounded");
             }
         }
-        (tensor_to_vec(&parameters).expect("values"), adam)
+        (parameters, adam)
     }
 
     fn gradients(count: usize, seed: u64) -> Vec<f32> {
@@ -132,6 +143,19 @@ mod tests {
     }
 
     #[test]
+    fn rounded_gradients_move_parameters_that_are_rounded_as_libtorch_does() {
+        let steps: Vec<_> = (0..5).map(|step| (gradients(300_007, step), 1e-3)).collect();
+        let compute = Compute { precision: Precision::Bf16, ..Compute::PLAIN };
+        let [fused, plain] = [true, false].map(|fused| computed_after(&steps, fused, compute).0);
+        let worst = (&fused.flat - &plain.flat).abs().max().double_value(&[]);
+        assert!(worst < 1e-6, "largest difference {worst}");
+        let rounded = fused.rounded.expect("bf16");
+        assert_eq!(rounded.kind(), Kind::BFloat16);
+        assert_eq!(rounded, fused.flat.to_kind(Kind::BFloat16));
+        assert_ne!(rounded.to_kind(Kind::Float), fused.flat);
+    }
+
+    #[test]
     fn moments_without_gradients_come_to_rest() {
         let steps = std::iter::once(1.0).chain(std::iter::repeat_n(0.0, 80_000));
         let steps: Vec<_> = steps.map(|gradient| (vec![gradient; 3], 1e-3)).collect();
@@ -147,10 +171,10 @@ mod tests {
         let (half, adam) = parameters_after(&steps[..2], true);
         let (first, second, count) = adam.to_parts().expect("parts");
         let mut adam = Adam::restore(&first, &second, count, Device::Cpu).expect("restore");
-        let mut parameters = Tensor::from_slice(&half);
+        let mut parameters = Parameters::new(&half, Compute::PLAIN).expect("parameters");
         for (gradient, rate) in &steps[2..] {
             adam.step(&mut parameters, &[Tensor::from_slice(gradient)], *rate).expect("step");
         }
-        assert_eq!(tensor_to_vec(&parameters).expect("values"), whole);
+        assert_eq!(tensor_to_vec(&parameters.flat).expect("values"), whole);
     }
 }

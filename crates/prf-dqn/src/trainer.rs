@@ -7,6 +7,7 @@ use prf_envs::rng::{ChaCha8Rng, below, stream, unit_f32};
 use prf_envs::{Status, Task};
 
 use crate::checkpoint::{CheckpointStore, Model, Segment};
+use crate::compute::Compute;
 use crate::config::RunConfig;
 use crate::error::{Error, Result};
 use crate::evaluate::{Spread, episode_seeds, play_greedily};
@@ -121,10 +122,11 @@ impl Trainer {
             .collect::<Result<Vec<_>>>()?;
         let evaluation_tasks = (0..config.evaluation.episodes).map(|_| make()).collect::<Result<Vec<_>>>()?;
         let architecture = architecture(&evaluation_tasks[0])?;
+        let compute = Compute { device, precision: config.train.precision };
         let frame_len = (architecture.input[0] * architecture.input[1]) as usize;
         Ok(Self {
             evaluation_seeds: episode_seeds(0, "evaluation", config.evaluation.episodes),
-            learner: Learner::new(architecture, config.train.learner(), device, &mut stream(seed, "network", 0))?,
+            learner: Learner::new(architecture, config.train.learner(), compute, &mut stream(seed, "network", 0))?,
             replay: Replay::new(config.train.replay_steps, lanes.len(), frame_len),
             exploration: stream(seed, "exploration", 0),
             sampling: stream(seed, "replay", 0),

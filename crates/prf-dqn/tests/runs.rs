@@ -6,6 +6,7 @@ use std::fs;
 use std::path::Path;
 
 use prf_core::{Frame, Goal};
+use prf_dqn::compute::Precision;
 use prf_dqn::config::RunConfig;
 use prf_dqn::record::{Event, Recorder};
 use prf_dqn::run_dir::RunDir;
@@ -104,14 +105,18 @@ fn the_same_seed_gives_the_same_run_and_another_seed_another() {
 
 #[test]
 fn interrupted_runs_continue_to_the_same_bits() {
-    let (whole, parts) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
-    train(&config(), whole.path(), usize::MAX);
-    for rounds in [0, 1, 37, 5, 50] {
-        assert_eq!(train(&config(), parts.path(), rounds), Ending::Interrupted);
+    for precision in [Precision::F32, Precision::Bf16] {
+        let mut config = config();
+        config.train.precision = precision;
+        let (whole, parts) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+        train(&config, whole.path(), usize::MAX);
+        for rounds in [0, 1, 37, 5, 50] {
+            assert_eq!(train(&config, parts.path(), rounds), Ending::Interrupted);
+        }
+        assert_eq!(train(&config, parts.path(), usize::MAX), Ending::Finished);
+        assert_eq!(metrics(parts.path()), metrics(whole.path()), "{precision:?}");
+        assert_eq!(final_model(parts.path()), final_model(whole.path()), "{precision:?}");
     }
-    assert_eq!(train(&config(), parts.path(), usize::MAX), Ending::Finished);
-    assert_eq!(metrics(parts.path()), metrics(whole.path()));
-    assert_eq!(final_model(parts.path()), final_model(whole.path()));
 }
 
 #[test]

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use prf_core::Frame;
 use prf_dqn::checkpoint::{CheckpointStore, MODEL_FILE, Model};
+use prf_dqn::compute::Compute;
 use prf_dqn::evaluate::{Episode, Spread, episode_seeds, play_greedily};
 use prf_dqn::files::write_whole;
 use prf_dqn::learner::greedy_actions;
@@ -78,7 +79,7 @@ fn load(loaded: &LoadedRun, model: &Path, device: tch::Device) -> prf_dqn::Resul
     let task = Task::new(&loaded.config.task(), loaded.goal.as_ref())?;
     let found = Model::read(model)?;
     found.check(&architecture(&task)?, model)?;
-    found.network(device)
+    found.network(Compute { device, precision: loaded.config.train.precision })
 }
 
 /// The run folder and the model file that `path` (a run, one of its checkpoints or a model file) stands for.

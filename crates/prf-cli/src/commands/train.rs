@@ -17,11 +17,13 @@ use crate::progress::ProgressReporter;
 use crate::settings::{LoadedRun, load_run};
 
 pub(crate) fn run(args: &TrainArgs, printer: &mut Printer) -> Result<ExitStatus> {
-    let loaded = load_run(&args.config, &args.set, args.seed)?;
+    let mut loaded = load_run(&args.config, &args.set, args.seed)?;
     if let Some(warning) = &loaded.warning {
         printer.warning(format_args!("the goal's sequence: {warning}"), Some(warning.hint()));
     }
     let device = learning::open_device(args.device)?;
+    // A run stays with what it began with, wherever it is resumed.
+    loaded.config.train.precision = loaded.config.train.precision.resolved(device);
     let threads = set_threads(&loaded.config);
     if args.dry_run {
         return dry_run(&loaded, device, printer);

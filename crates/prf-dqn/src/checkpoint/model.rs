@@ -7,6 +7,7 @@ use std::path::Path;
 use safetensors::{Dtype, SafeTensors};
 
 use super::{bytes_f32, f32_bytes, view};
+use crate::compute::Compute;
 use crate::error::{Error, Result};
 use crate::files::write_whole;
 use crate::network::{Architecture, QNetwork};
@@ -27,8 +28,8 @@ impl Model {
     }
 
     /// The network of this model.
-    pub fn network(&self, device: tch::Device) -> Result<QNetwork> {
-        QNetwork::from_flat(self.architecture.clone(), &self.values, device)
+    pub fn network(&self, compute: Compute) -> Result<QNetwork> {
+        QNetwork::from_flat(self.architecture.clone(), &self.values, compute)
     }
 
     /// Writes the file whole or, on an error, not at all.
@@ -104,7 +105,7 @@ mod tests {
     fn model() -> Model {
         let architecture = Architecture { input: [44, 52], actions: 4 };
         let mut rng = prf_envs::rng::stream(1, "network", 0);
-        Model::of(&QNetwork::new(architecture, tch::Device::Cpu, &mut rng).expect("network")).expect("model")
+        Model::of(&QNetwork::new(architecture, Compute::PLAIN, &mut rng).expect("network")).expect("model")
     }
 
     #[test]

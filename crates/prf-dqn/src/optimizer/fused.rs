@@ -1,8 +1,9 @@
 //! Adam's step on the CPU in one pass over memory.
 //!
 //! Written as tensor operations a step reads and writes the 1.7 million parameters seven times and takes longer than the
-//! backward pass; here each number is touched once. libtorch offers no safe slice of a tensor's storage, hence the
-//! `unsafe` blocks: they turn contiguous f32 CPU tensors, checked just before, into slices.
+//! backward pass; here each number is touched once, and what the next forward pass reads is rounded on the way. libtorch
+//! offers no safe slice of a tensor's storage, hence the `unsafe` blocks: they turn contiguous CPU tensors, whose types are
+//! checked just before, into slices.
 #![expect(unsafe_code, reason = "a slice of a tensor's storage exists only behind a pointer")]
 
 use std::slice;
@@ -11,12 +12,15 @@ use tch::{Device, Kind, Tensor};
 
 use super::{BETA1, BETA2, EPSILON, StepSize};
 use crate::error::Result;
+use crate::network::Parameters;
 
 /// Parameters below which a second thread costs more than it saves.
 const LEAST_PER_THREAD: usize = 100_000;
+/// Parameters that are moved, then rounded while they are still in the nearest cache.
+const TOGETHER: usize = 1024;
 
 pub(super) fn step(
-    parameters: &mut Tensor,
+    parameters: &mut Parameters,
     first: &mut Tensor,
     second: &mut Tensor,
     gradients: &[Tensor],
@@ -24,32 +28,36 @@ pub(super) fn step(
 ) -> Result<()> {
     let gradients: Vec<Tensor> = gradients.iter().map(Tensor::f_contiguous).collect::<Result<_, _>>()?;
     let count: usize = gradients.iter().map(Tensor::numel).sum();
-    assert_eq!(parameters.numel(), count, "gradients and parameters differ in number");
-    assert_eq!(first.numel(), count, "moments and parameters differ in number");
-    assert_eq!(second.numel(), count, "moments and parameters differ in number");
+    let Parameters { flat, rounded } = parameters;
+    for tensor in [&*flat, first, second].into_iter().chain(rounded.as_ref()) {
+        assert_eq!(tensor.numel(), count, "gradients, parameters and moments differ in number");
+    }
     if count == 0 {
         return Ok(());
     }
-    assert_disjoint(&[parameters, first, second], &gradients);
+    let written = [&*flat, first, second].into_iter().chain(rounded.as_ref());
+    assert_disjoint(written, &gradients);
 
-    let (mut parameters, mut first, mut second) = (values_mut(parameters), values_mut(first), values_mut(second));
+    let mut rest = Piece {
+        parameters: values_mut(flat),
+        first: values_mut(first),
+        second: values_mut(second),
+        rounded: rounded.as_mut().map_or(&mut [], values_mut),
+    };
     let threads = tch::get_num_threads().max(1) as usize;
     let share = count.div_ceil(threads).max(LEAST_PER_THREAD);
     std::thread::scope(|scope| {
-        for gradient in gradients.iter().map(values) {
-            for gradient in gradient.chunks(share) {
-                let piece = Piece {
-                    parameters: split_off_front(&mut parameters, gradient.len()),
-                    first: split_off_front(&mut first, gradient.len()),
-                    second: split_off_front(&mut second, gradient.len()),
-                    gradient,
-                };
+        for gradient in &gradients {
+            let gradient = Gradient::of(gradient);
+            for start in (0..gradient.len()).step_by(share) {
+                let gradient = gradient.part(start, share);
+                let piece = rest.split_off_front(gradient.len());
                 // Whole shares go to threads of their own, what is left over stays on this one. Pieces never
                 // interact, so the threads cannot change the result.
                 if threads > 1 && gradient.len() == share {
-                    scope.spawn(move || piece.step(size));
+                    scope.spawn(move || piece.step(gradient, size));
                 } else {
-                    piece.step(size);
+                    piece.step(gradient, size);
                 }
             }
         }
@@ -57,24 +65,66 @@ pub(super) fn step(
     Ok(())
 }
 
+/// What belongs to some of the parameters.
 struct Piece<'a> {
     parameters: &'a mut [f32],
     first: &'a mut [f32],
     second: &'a mut [f32],
-    gradient: &'a [f32],
+    /// As many again, or none where nothing has to be rounded.
+    rounded: &'a mut [Bf16],
 }
 
-impl Piece<'_> {
-    fn step(self, size: StepSize) {
-        let (beta1, beta2, epsilon) = (BETA1 as f32, BETA2 as f32, EPSILON as f32);
-        let (rest1, rest2) = ((1.0 - BETA1) as f32, (1.0 - BETA2) as f32);
-        let (rate, correction) = (size.rate as f32, (1.0 / size.second_correction) as f32);
-        let moments = self.first.iter_mut().zip(self.second);
-        for ((parameter, &gradient), (first, second)) in self.parameters.iter_mut().zip(self.gradient).zip(moments) {
-            *first = settle(beta1 * *first + rest1 * gradient);
-            *second = settle(beta2 * *second + rest2 * gradient * gradient);
-            *parameter -= rate * *first / (second.sqrt() * correction + epsilon);
+impl<'a> Piece<'a> {
+    fn split_off_front(&mut self, count: usize) -> Self {
+        let rounded = if self.rounded.is_empty() { 0 } else { count };
+        Piece {
+            parameters: split_off_front(&mut self.parameters, count),
+            first: split_off_front(&mut self.first, count),
+            second: split_off_front(&mut self.second, count),
+            rounded: split_off_front(&mut self.rounded, rounded),
         }
+    }
+
+    fn step(mut self, gradient: Gradient<'_>, size: StepSize) {
+        for start in (0..gradient.len()).step_by(TOGETHER) {
+            let gradient = gradient.part(start, TOGETHER);
+            let piece = self.split_off_front(gradient.len());
+            match gradient {
+                Gradient::F32(gradient) => {
+                    adam(gradient.iter().copied(), piece.parameters, piece.first, piece.second, size)
+                }
+                Gradient::Bf16(gradient) => {
+                    adam(
+                        gradient.iter().map(|value| value.widened()),
+                        piece.parameters,
+                        piece.first,
+                        piece.second,
+                        size,
+                    );
+                }
+            }
+            for (rounded, &parameter) in piece.rounded.iter_mut().zip(&*piece.parameters) {
+                *rounded = Bf16::nearest(parameter);
+            }
+        }
+    }
+}
+
+fn adam(
+    gradient: impl Iterator<Item = f32>,
+    parameters: &mut [f32],
+    first: &mut [f32],
+    second: &mut [f32],
+    size: StepSize,
+) {
+    let (beta1, beta2, epsilon) = (BETA1 as f32, BETA2 as f32, EPSILON as f32);
+    let (rest1, rest2) = ((1.0 - BETA1) as f32, (1.0 - BETA2) as f32);
+    let (rate, correction) = (size.rate as f32, (1.0 / size.second_correction) as f32);
+    let moments = first.iter_mut().zip(second);
+    for ((parameter, gradient), (first, second)) in parameters.iter_mut().zip(gradient).zip(moments) {
+        *first = settle(beta1 * *first + rest1 * gradient);
+        *second = settle(beta2 * *second + rest2 * gradient * gradient);
+        *parameter -= rate * *first / (second.sqrt() * correction + epsilon);
     }
 }
 
@@ -88,41 +138,128 @@ fn settle(moment: f32) -> f32 {
     if moment.abs() < NEGLIGIBLE { 0.0 } else { moment }
 }
 
-fn split_off_front<'a>(values: &mut &'a mut [f32], count: usize) -> &'a mut [f32] {
+/// The upper half of an f32.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(transparent)]
+struct Bf16(u16);
+
+impl Bf16 {
+    /// The nearest value, of two equally near ones the even one; what is no number stays none.
+    fn nearest(value: f32) -> Self {
+        let bits = value.to_bits();
+        let even = bits.wrapping_add(0x7fff + (bits >> 16 & 1));
+        Self((if value.is_nan() { bits | 1 << 22 } else { even } >> 16) as u16)
+    }
+
+    fn widened(self) -> f32 {
+        f32::from_bits(u32::from(self.0) << 16)
+    }
+}
+
+/// The gradient of some of the parameters, in the numbers that the network computes with.
+#[derive(Clone, Copy)]
+enum Gradient<'a> {
+    F32(&'a [f32]),
+    Bf16(&'a [Bf16]),
+}
+
+impl<'a> Gradient<'a> {
+    fn of(tensor: &'a Tensor) -> Self {
+        match tensor.kind() {
+            Kind::BFloat16 => Self::Bf16(values(tensor)),
+            _ => Self::F32(values(tensor)),
+        }
+    }
+
+    fn len(self) -> usize {
+        match self {
+            Self::F32(values) => values.len(),
+            Self::Bf16(values) => values.len(),
+        }
+    }
+
+    /// At most `count` of them, from `start` on.
+    fn part(self, start: usize, count: usize) -> Self {
+        let range = start..self.len().min(start + count);
+        match self {
+            Self::F32(values) => Self::F32(&values[range]),
+            Self::Bf16(values) => Self::Bf16(&values[range]),
+        }
+    }
+}
+
+fn split_off_front<'a, T>(values: &mut &'a mut [T], count: usize) -> &'a mut [T] {
     values.split_off_mut(..count).expect("the counts were compared")
 }
 
-fn values(tensor: &Tensor) -> &[f32] {
-    assert_host_f32(tensor);
-    // SAFETY: the storage is on the host, holds numel() contiguous f32 and lives as long as the borrowed tensor.
+/// Numbers as libtorch stores them.
+trait Element {
+    const KIND: Kind;
+}
+
+impl Element for f32 {
+    const KIND: Kind = Kind::Float;
+}
+
+impl Element for Bf16 {
+    const KIND: Kind = Kind::BFloat16;
+}
+
+fn values<T: Element>(tensor: &Tensor) -> &[T] {
+    assert_readable::<T>(tensor);
+    // SAFETY: the storage is on the host, holds numel() contiguous T and lives as long as the borrowed tensor.
     unsafe { slice::from_raw_parts(tensor.data_ptr().cast(), tensor.numel()) }
 }
 
-fn values_mut(tensor: &mut Tensor) -> &mut [f32] {
-    assert_host_f32(tensor);
+fn values_mut<T: Element>(tensor: &mut Tensor) -> &mut [T] {
+    assert_readable::<T>(tensor);
     // SAFETY: as above, and `step` has made sure that no other slice it takes lies over this one; no libtorch call runs
     // while the slices live.
     unsafe { slice::from_raw_parts_mut(tensor.data_ptr().cast(), tensor.numel()) }
 }
 
-fn assert_host_f32(tensor: &Tensor) {
+fn assert_readable<T: Element>(tensor: &Tensor) {
     assert!(
-        tensor.device() == Device::Cpu && tensor.kind() == Kind::Float && tensor.is_contiguous(),
-        "Adam's fused step needs contiguous f32 tensors on the CPU"
+        tensor.device() == Device::Cpu && tensor.kind() == T::KIND && tensor.is_contiguous(),
+        "Adam's fused step needs contiguous tensors on the CPU, of {:?}",
+        T::KIND
     );
 }
 
 /// Tensors can be views of each other, which Rust's borrows do not see.
-fn assert_disjoint(written: &[&mut Tensor], read: &[Tensor]) {
+fn assert_disjoint<'a>(written: impl Iterator<Item = &'a Tensor>, read: &[Tensor]) {
     let range = |tensor: &Tensor| {
         let start = tensor.data_ptr() as usize;
-        start..start + tensor.numel() * size_of::<f32>()
+        start..start + tensor.numel() * tensor.kind().elt_size_in_bytes()
     };
-    let mut ranges: Vec<_> = written.iter().map(|tensor| (range(tensor), true)).collect();
+    let mut ranges: Vec<_> = written.map(|tensor| (range(tensor), true)).collect();
     ranges.extend(read.iter().map(|tensor| (range(tensor), false)));
     ranges.sort_by_key(|(range, _)| range.start);
     for pair in ranges.windows(2) {
         let [(before, a), (after, b)] = pair else { unreachable!("windows of two") };
         assert!(before.end <= after.start || !(*a || *b), "Adam's tensors share memory");
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rounding_is_to_the_nearest_then_the_even_and_keeps_what_is_no_number() {
+        for (value, expected) in [
+            (1.0, 1.0),
+            (1.0 + 1.0 / 256.0, 1.0), // halfway between 1 and 1 + 1/128: the even one
+            (1.0 + 3.0 / 256.0, 1.0 + 2.0 / 128.0), // halfway again, now upwards
+            (-1.0 - 1.001 / 256.0, -1.0 - 1.0 / 128.0),
+            (f32::MAX, f32::INFINITY),
+            (f32::NEG_INFINITY, f32::NEG_INFINITY),
+            (1e-40, f32::from_bits(0x1_0000)),
+        ] {
+            assert_eq!(Bf16::nearest(value).widened(), expected, "{value}");
+        }
+        for bits in [0x7fc0_0000, 0x7f80_0001, 0x7fff_ffff, 0xffff_ffff] {
+            assert!(Bf16::nearest(f32::from_bits(bits)).widened().is_nan(), "{bits:x}");
+        }
     }
 }
