@@ -31,6 +31,21 @@ pub struct LearnerSettings {
     pub target_every_updates: u64,
 }
 
+/// A batch of n transitions as tensors.
+#[derive(Debug)]
+pub struct Inputs {
+    /// Pictures, shape [n, 1, h, w].
+    states: Tensor,
+    /// Pictures, shape [n, 1, h, w].
+    next_states: Tensor,
+    /// Shape [n, 1].
+    actions: Tensor,
+    /// Scaled, shape [n].
+    rewards: Tensor,
+    /// Shape [n].
+    discounts: Tensor,
+}
+
 impl Learner {
     /// A learner with a newly drawn network.
     pub fn new(
@@ -59,12 +74,27 @@ impl Learner {
     /// `c·r + γⁿ·Q_target(s′, a′) − Q(s, a)`, with `a′` the best action of the online network (double) or of the target,
     /// and `c` the reward scale.
     pub fn update(&mut self, batch: &Batch, learning_rate: f64) -> Result<f32> {
-        let states = self.online.pictures(&batch.states, batch.len())?;
-        let next_states = self.online.pictures(&batch.next_states, batch.len())?;
-        let actions = Tensor::f_from_slice(&batch.actions)?.f_to_device(self.compute.device)?.f_unsqueeze(1)?;
-        let targets = no_grad(|| self.targets(batch, &next_states))?;
+        let inputs = self.inputs(batch)?;
+        self.update_from(&inputs, learning_rate)
+    }
 
-        let values = self.online.forward(&states)?.f_gather(1, &actions, false)?.f_squeeze_dim(1)?;
+    /// A batch as tensors on the learner's device.
+    pub fn inputs(&self, batch: &Batch) -> Result<Inputs> {
+        let device = self.compute.device;
+        let numbers = |values: &[f32]| Tensor::f_from_slice(values)?.f_to_device(device);
+        Ok(Inputs {
+            states: self.online.pictures(&batch.states, batch.len())?,
+            next_states: self.online.pictures(&batch.next_states, batch.len())?,
+            actions: Tensor::f_from_slice(&batch.actions)?.f_to_device(device)?.f_unsqueeze(1)?,
+            rewards: numbers(&batch.rewards)?.f_mul_scalar(self.settings.reward_scale)?,
+            discounts: numbers(&batch.discounts)?,
+        })
+    }
+
+    /// As [`update`](Learner::update), from what [`inputs`](Learner::inputs) gave.
+    pub fn update_from(&mut self, inputs: &Inputs, learning_rate: f64) -> Result<f32> {
+        let targets = no_grad(|| self.targets(inputs))?;
+        let values = self.online.forward(&inputs.states)?.f_gather(1, &inputs.actions, false)?.f_squeeze_dim(1)?;
         let loss = values.f_smooth_l1_loss(&targets, Reduction::Mean, 1.0)?;
         let gradients = Tensor::f_run_backward(&[&loss], self.online.leaves(), false, false)?;
         self.optimizer.step(self.online.parameters_mut(), &gradients, learning_rate)?;
@@ -76,7 +106,8 @@ impl Learner {
         Ok(loss.f_double_value(&[])? as f32)
     }
 
-    fn targets(&self, batch: &Batch, next_states: &Tensor) -> Result<Tensor> {
+    fn targets(&self, inputs: &Inputs) -> Result<Tensor> {
+        let next_states = &inputs.next_states;
         let next_values = self.target.forward(next_states)?;
         let best = if self.settings.double {
             let actions = self.online.forward(next_states)?.f_argmax(1, true)?;
@@ -84,10 +115,7 @@ impl Learner {
         } else {
             next_values.f_amax([1i64], false)?
         };
-        let rewards = Tensor::f_from_slice(&batch.rewards)?.f_to_device(self.compute.device)?;
-        let rewards = rewards.f_mul_scalar(self.settings.reward_scale)?;
-        let discounts = Tensor::f_from_slice(&batch.discounts)?.f_to_device(self.compute.device)?;
-        Ok(rewards.f_addcmul(&discounts, &best)?)
+        Ok(inputs.rewards.f_addcmul(&inputs.discounts, &best)?)
     }
 }
 
