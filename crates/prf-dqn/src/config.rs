@@ -192,7 +192,7 @@ impl RunConfig {
 
 impl TrainConfig {
     /// What of it concerns an update.
-    pub(crate) fn learner(&self) -> LearnerSettings {
+    pub fn learner(&self) -> LearnerSettings {
         let Self { double, reward_scale, target_every_updates, .. } = *self;
         LearnerSettings { double, reward_scale, target_every_updates }
     }
