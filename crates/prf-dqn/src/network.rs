@@ -1,22 +1,30 @@
-//! The Q-network of Mnih et al. (Nature, 2015) on one picture, with all parameters in one flat tensor.
+//! The Q-network of Mnih et al. (Nature, 2015) on one picture, plain or dueling (Wang et al., 2016), with all parameters in
+//! one flat tensor.
+
+use std::fmt;
 
 use prf_envs::rng::ChaCha8Rng;
+use serde::{Deserialize, Serialize};
 use tch::{Device, Kind, Tensor, no_grad};
 
 use crate::error::Result;
 
 /// One convolution: output channels, kernel side, stride.
 const CONVOLUTIONS: [(i64, i64, i64); 3] = [(32, 8, 4), (64, 4, 2), (64, 3, 1)];
-/// Units of the hidden fully connected layer.
+/// Units of each hidden fully connected layer.
 const HIDDEN_UNITS: i64 = 512;
 
 /// What decides the shape of the network.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Architecture {
     /// Height and width of the input, in pixels.
     pub input: [i64; 2],
     /// Number of actions, the width of the output.
     pub actions: i64,
+    /// Whether a value and an advantage stream, each with a hidden layer of its own, follow the convolutions, in place of
+    /// a single one.
+    pub dueling: bool,
 }
 
 impl Architecture {
@@ -34,14 +42,26 @@ impl Architecture {
             (height, width) = ((height - kernel) / stride + 1, (width - kernel) / stride + 1);
             channels = outputs;
         }
-        push("hidden", vec![HIDDEN_UNITS, channels * height * width]);
-        push("output", vec![self.actions, HIDDEN_UNITS]);
+        let features = channels * height * width;
+        let streams =
+            if self.dueling { vec![("value.", 1), ("advantage.", self.actions)] } else { vec![("", self.actions)] };
+        for (stream, outputs) in streams {
+            push(&format!("{stream}hidden"), vec![HIDDEN_UNITS, features]);
+            push(&format!("{stream}output"), vec![outputs, HIDDEN_UNITS]);
+        }
         parameters
     }
 
     /// The smallest height and width that the convolutions accept, in pixels.
     pub fn smallest_input() -> i64 {
         CONVOLUTIONS.into_iter().rev().fold(1, |side, (_, kernel, stride)| (side - 1) * stride + kernel)
+    }
+}
+
+impl fmt::Display for Architecture {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let ([height, width], kind) = (self.input, if self.dueling { "dueling " } else { "" });
+        write!(f, "a {kind}network for {height}×{width} px and {} actions", self.actions)
     }
 }
 
@@ -85,6 +105,8 @@ impl QNetwork {
     }
 
     /// Q-values of a batch: pictures as f32 in [0, 1], shape [n, 1, h, w], to values of shape [n, actions].
+    ///
+    /// A dueling network gives V + A − mean A (equation 9 of Wang et al.).
     pub fn forward(&self, pictures: &Tensor) -> Result<Tensor> {
         let mut x = pictures.shallow_clone();
         let mut leaves = self.leaves.chunks_exact(2);
@@ -92,12 +114,15 @@ impl QNetwork {
             let [weight, bias] = parameters else { unreachable!("chunks of two") };
             x = x.f_conv2d(weight, Some(bias), [stride; 2], [0; 2], [1; 2], 1)?.f_relu_()?;
         }
-        x = x.f_flatten(1, -1)?;
-        let [hidden_weight, hidden_bias, output_weight, output_bias] = &self.leaves[CONVOLUTIONS.len() * 2..] else {
-            unreachable!("two fully connected layers")
-        };
-        x = x.f_linear(hidden_weight, Some(hidden_bias))?.f_relu_()?;
-        Ok(x.f_linear(output_weight, Some(output_bias))?)
+        let features = x.f_flatten(1, -1)?;
+        let streams = &self.leaves[CONVOLUTIONS.len() * 2..];
+        if !self.architecture.dueling {
+            return fully_connected(&features, streams);
+        }
+        let (value, advantage) = streams.split_at(streams.len() / 2);
+        let (value, advantage) = (fully_connected(&features, value)?, fully_connected(&features, advantage)?);
+        let mean = advantage.f_mean_dim([1i64].as_slice(), true, Kind::Float)?;
+        Ok(advantage.f_add(&value.f_sub(&mean)?)?)
     }
 
     /// Q-values of `count` pictures of h × w bytes each: count × actions values, row by row, outside the autograd graph.
@@ -143,6 +168,15 @@ impl QNetwork {
     pub fn to_vec(&self) -> Result<Vec<f32>> {
         tensor_to_vec(&self.flat)
     }
+}
+
+/// What the hidden and the output layer of a stream make of `features`.
+fn fully_connected(features: &Tensor, parameters: &[Tensor]) -> Result<Tensor> {
+    let [hidden_weight, hidden_bias, output_weight, output_bias] = parameters else {
+        unreachable!("weights and biases of two layers")
+    };
+    let hidden = features.f_linear(hidden_weight, Some(hidden_bias))?.f_relu_()?;
+    Ok(hidden.f_linear(output_weight, Some(output_bias))?)
 }
 
 /// Copies a tensor's values to the host.
