@@ -115,6 +115,8 @@ impl Trainer {
     }
 
     fn new(config: RunConfig, goal: Option<&Goal>, run: &RunDir, device: tch::Device) -> Result<Self> {
+        // First of all: whoever holds the records is alone in the run directory.
+        let metrics = JsonlRecorder::open(&run.metrics_path())?;
         let seed = config.seed;
         let task = config.task();
         let make = || Ok::<_, Error>(Task::new(&task, goal)?);
@@ -131,7 +133,7 @@ impl Trainer {
             exploration: stream(seed, "exploration", 0),
             sampling: stream(seed, "replay", 0),
             counters: Counters::default(),
-            metrics: JsonlRecorder::open(&run.metrics_path())?,
+            metrics,
             checkpoints: CheckpointStore::open(run.path())?,
             retention: Retention::default(),
             saved_at: None,

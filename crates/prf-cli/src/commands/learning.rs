@@ -60,6 +60,9 @@ pub(super) fn explain(error: anyhow::Error, resume: Option<&str>) -> anyhow::Err
             };
             CliError::failed(error.to_string()).hint(hint).into()
         }
+        Some(prf_dqn::Error::Busy { .. }) => {
+            CliError::failed(error.to_string()).hint("wait until it has ended, or name another folder by --out").into()
+        }
         Some(prf_dqn::Error::Mismatch { .. }) => {
             CliError::failed(error.to_string()).hint("use it with the config.toml of its own run").into()
         }
