@@ -10,8 +10,11 @@ use crate::error::Result;
 pub(crate) struct Interrupt(Arc<AtomicBool>);
 
 impl Interrupt {
-    /// From now on the signals no longer end the program. To be called once.
+    /// From now on the signals no longer end the program, and a file that reaches the limit of its size (`ulimit -f`) is an error
+    /// of the write and no end of the program either. To be called once.
     pub(crate) fn listen() -> Result<Interrupt> {
+        #[cfg(unix)]
+        signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default())?;
         let came = Arc::new(AtomicBool::new(false));
         let handle = Arc::clone(&came);
         ctrlc::set_handler(move || handle.store(true, Ordering::Relaxed))?;

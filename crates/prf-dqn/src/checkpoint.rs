@@ -12,17 +12,21 @@ use crate::files::write_synced;
 use crate::network::Architecture;
 
 mod model;
+mod origin;
+mod retention;
 mod store;
 
 pub use model::Model;
+use origin::Origin;
+pub use origin::{FORMAT, Writer};
+pub(crate) use retention::Retention;
 pub use store::CheckpointStore;
-pub(crate) use store::Segment;
 
 const STATE_FILE: &str = "state.safetensors";
 /// The network's parameters, by name: the file of a checkpoint that is enough to play.
 pub const MODEL_FILE: &str = "model.safetensors";
-/// Key of the JSON text in the metadata of [`STATE_FILE`].
-const STATE_KEY: &str = "prf";
+/// The byte string of [`STATE_FILE`] that is the state's JSON text.
+const STATE_NAME: &str = "state";
 
 /// What a checkpoint holds besides the replay.
 #[derive(Debug)]
@@ -31,26 +35,26 @@ pub struct Checkpoint {
     pub state: String,
     /// Named byte strings: random streams and tasks.
     pub blobs: BTreeMap<String, Vec<u8>>,
-    /// Named parameter vectors: target network and Adam's moments.
+    /// Named vectors: target network, Adam's moments, and the priorities of the replay if it has any.
     pub vectors: BTreeMap<String, Vec<f32>>,
     /// The online network.
     pub model: Model,
 }
 
 impl Checkpoint {
-    /// Writes the checkpoint's files into the existing, empty directory `dir`.
-    fn write(&self, dir: &Path) -> Result<()> {
+    /// Writes the checkpoint's files into the existing directory `dir`.
+    pub(crate) fn write(&self, dir: &Path) -> Result<()> {
         self.model.write(&dir.join(MODEL_FILE))?;
         let path = dir.join(STATE_FILE);
-        let vectors: BTreeMap<&String, Vec<u8>> = self.vectors.iter().map(|(k, v)| (k, f32_bytes(v))).collect();
-        let mut tensors = Vec::new();
+        let vectors: BTreeMap<&String, Vec<u8>> = self.vectors.iter().map(|(k, v)| (k, bytes_of(v))).collect();
+        let mut tensors = vec![(STATE_NAME, view(Dtype::U8, vec![self.state.len()], self.state.as_bytes()))];
         for (name, bytes) in &self.blobs {
             tensors.push((name.as_str(), view(Dtype::U8, vec![bytes.len()], bytes)));
         }
         for (name, bytes) in &vectors {
             tensors.push((name.as_str(), view(Dtype::F32, vec![bytes.len() / 4], bytes)));
         }
-        let metadata = [(STATE_KEY.to_owned(), self.state.clone())].into();
+        let metadata = Origin::ours(&self.model.architecture).metadata();
         let bytes = safetensors::serialize(tensors, Some(metadata)).expect("names are distinct and sizes consistent");
         write_synced(&path, &bytes).map_err(Error::io("write", &path))
     }
@@ -58,8 +62,8 @@ impl Checkpoint {
     /// Reads a checkpoint's directory.
     ///
     /// # Errors
-    /// [`Error::Checkpoint`] for a file that is cut short, damaged or made for another network; [`Error::Io`] when it
-    /// cannot be read.
+    /// [`Error::Format`] for a file of another format; [`Error::Mismatch`] for one made for another network;
+    /// [`Error::Checkpoint`] for one that is cut short or damaged; [`Error::Io`] when it cannot be read.
     pub fn read(dir: &Path, architecture: &Architecture) -> Result<Self> {
         let model = Model::read(&dir.join(MODEL_FILE))?;
         model.check(architecture, &dir.join(MODEL_FILE))?;
@@ -68,16 +72,20 @@ impl Checkpoint {
         let whole = "a whole checkpoint of this version";
         let damaged = |error: safetensors::SafeTensorError| Error::checkpoint(&path, error, whole);
         let (_, metadata) = SafeTensors::read_metadata(&bytes).map_err(damaged)?;
-        let state = metadata.metadata().as_ref().and_then(|map| map.get(STATE_KEY)).cloned();
-        let state = state.ok_or_else(|| Error::checkpoint(&path, "no run state", whole))?;
+        let network = Origin::read(&metadata, &path)?;
+        if network != *architecture {
+            return Err(Error::mismatch(&path, &network, architecture));
+        }
         let (mut blobs, mut vectors) = (BTreeMap::new(), BTreeMap::new());
         for (name, tensor) in SafeTensors::deserialize(&bytes).map_err(damaged)?.iter() {
             match tensor.dtype() {
-                Dtype::F32 => drop(vectors.insert(name.to_owned(), bytes_f32(tensor.data()))),
+                Dtype::F32 => drop(vectors.insert(name.to_owned(), floats_of(tensor.data()))),
                 Dtype::U8 => drop(blobs.insert(name.to_owned(), tensor.data().to_vec())),
                 other => return Err(Error::checkpoint(&path, format!("`{name}` of type {other}"), whole)),
             }
         }
+        let state = blobs.remove(STATE_NAME).and_then(|bytes| String::from_utf8(bytes).ok());
+        let state = state.ok_or_else(|| Error::checkpoint(&path, "no run state", whole))?;
         Ok(Self { state, blobs, vectors, model })
     }
 
@@ -93,7 +101,7 @@ impl Checkpoint {
             return Ok(vector);
         }
         let got = format!("{} numbers in `{name}`", vector.len());
-        Err(Error::checkpoint(dir.join(STATE_FILE), got, format!("{count}, as the network has parameters")))
+        Err(Error::checkpoint(dir.join(STATE_FILE), got, format!("{count} of them")))
     }
 }
 
@@ -101,14 +109,14 @@ fn missing(name: &str, dir: &Path) -> Error {
     Error::checkpoint(dir.join(STATE_FILE), format!("no `{name}`"), "a checkpoint of this version and configuration")
 }
 
-fn view(dtype: Dtype, shape: Vec<usize>, bytes: &[u8]) -> TensorView<'_> {
+pub(crate) fn view(dtype: Dtype, shape: Vec<usize>, bytes: &[u8]) -> TensorView<'_> {
     TensorView::new(dtype, shape, bytes).expect("the shape was computed from the bytes")
 }
 
-fn f32_bytes(values: &[f32]) -> Vec<u8> {
+pub(crate) fn bytes_of(values: &[f32]) -> Vec<u8> {
     values.iter().flat_map(|value| value.to_le_bytes()).collect()
 }
 
-fn bytes_f32(bytes: &[u8]) -> Vec<f32> {
+fn floats_of(bytes: &[u8]) -> Vec<f32> {
     bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect()
 }

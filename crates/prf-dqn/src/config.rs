@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::compute::Precision;
 use crate::learner::LearnerSettings;
+use crate::replay::{Reach, Replay};
 
 /// Everything that decides a training run. The same `RunConfig` on the same machine with the same
 /// number of threads gives the same run, bit by bit.
@@ -80,15 +81,25 @@ pub struct TrainConfig {
     /// machine is good at, when a run begins.
     #[serde(default)]
     pub precision: Precision,
+    /// Give the network a value and an advantage stream (dueling, Wang et al. 2016).
+    #[serde(default)]
+    pub dueling: bool,
     /// CPU threads of libtorch; 0 takes every core. Part of what makes a run repeatable.
     #[serde(default)]
     pub threads: usize,
     /// Steps between checkpoints.
     #[serde(default = "default_checkpoint_every_steps")]
     pub checkpoint_every_steps: u64,
+    /// Newest checkpoints that stay, 1..=1000; the model of the best evaluation stays besides. Each takes 16 bytes a
+    /// parameter, 27 MB for Breakout, and keeps the part of the replay that it needs.
+    #[serde(default = "default_keep_checkpoints")]
+    pub keep_checkpoints: usize,
     /// `[train.epsilon]`: the exploration schedule.
     #[serde(default)]
     pub epsilon: EpsilonConfig,
+    /// `[train.prioritized]`: what is drawn from the replay; uniformly when absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub prioritized: Option<PrioritizedConfig>,
 }
 
 /// `[train.epsilon]`: ε falls linearly from `start` to `end` within `decay_steps` steps.
@@ -101,6 +112,17 @@ pub struct EpsilonConfig {
     pub end: f32,
     /// Steps, over all environments, from `start` to `end`.
     pub decay_steps: u64,
+}
+
+/// `[train.prioritized]`: transitions are drawn in proportion to `(|δ| + 1e-6)^α`, δ being the error of their value when they were
+/// last learned from (Schaul et al. 2016, the proportional variant, with its values as defaults).
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct PrioritizedConfig {
+    /// How much priorities count, α in [0, 1]; 0 draws uniformly.
+    pub alpha: f32,
+    /// How far weights in the loss make up for it at first, β in [0, 1]; it rises linearly to 1 at the end of the run.
+    pub beta_start: f32,
 }
 
 /// `[evaluation]`: the greedy policy, played on fixed seeds while the run goes on.
@@ -116,6 +138,12 @@ pub struct EvaluationConfig {
 impl Default for EpsilonConfig {
     fn default() -> Self {
         Self { start: 1.0, end: 0.05, decay_steps: 60_000 }
+    }
+}
+
+impl Default for PrioritizedConfig {
+    fn default() -> Self {
+        Self { alpha: 0.6, beta_start: 0.4 }
     }
 }
 
@@ -161,6 +189,9 @@ fn default_double() -> bool {
 fn default_checkpoint_every_steps() -> u64 {
     20_000
 }
+fn default_keep_checkpoints() -> usize {
+    2
+}
 
 impl RunConfig {
     /// The configuration without the paths of pictures, for comparing runs: where the files lie does not matter.
@@ -174,9 +205,10 @@ impl RunConfig {
         config
     }
 
-    /// The part that describes the task.
+    /// The part that describes the task, whose rewards know the learner's discount.
     pub fn task(&self) -> TaskConfig {
-        TaskConfig { env: self.env.clone(), reward: self.reward.clone(), state: self.state }
+        let reward = RewardConfig { gamma: Some(self.train.gamma), ..self.reward.clone() };
+        TaskConfig { env: self.env.clone(), reward, state: self.state }
     }
 
     /// Checks every range.
@@ -195,6 +227,26 @@ impl TrainConfig {
     pub fn learner(&self) -> LearnerSettings {
         let Self { double, reward_scale, target_every_updates, .. } = *self;
         LearnerSettings { double, reward_scale, target_every_updates }
+    }
+
+    /// How far a transition reaches.
+    pub(crate) fn reach(&self) -> Reach {
+        Reach { steps: self.n_step, gamma: self.gamma }
+    }
+
+    /// The empty replay for frames of `frame_len` pixels.
+    pub(crate) fn replay(&self, frame_len: usize) -> Replay {
+        let replay = Replay::new(self.replay_steps, self.environments, frame_len);
+        match self.prioritized {
+            None => replay,
+            Some(PrioritizedConfig { alpha, .. }) => replay.with_priorities(alpha, self.reach()),
+        }
+    }
+
+    /// Memory that this replay takes once it is full, in bytes.
+    pub(crate) fn replay_bytes(&self, frame_len: usize) -> u64 {
+        let priorities = self.prioritized.map(|_| Replay::priorities_bytes(self.replay_steps, self.environments));
+        Replay::memory_bytes(self.replay_steps, self.environments, frame_len) + priorities.unwrap_or(0)
     }
 
     fn validate(&self) -> Result<(), ParamError> {
@@ -224,6 +276,7 @@ impl TrainConfig {
         within("train.target_every_updates", self.target_every_updates, 1, u64::MAX)?;
         within("train.threads", self.threads as u64, 0, 1024)?;
         within("train.checkpoint_every_steps", self.checkpoint_every_steps, 1, u64::MAX)?;
+        within("train.keep_checkpoints", self.keep_checkpoints as u64, 1, 1000)?;
         learning_rate("train.learning_rate", self.learning_rate)?;
         if let Some(rate) = self.final_learning_rate {
             learning_rate("train.final_learning_rate", rate)?;
@@ -234,17 +287,22 @@ impl TrainConfig {
         if !(self.reward_scale > 0.0 && self.reward_scale.is_finite()) {
             return Err(invalid("train.reward_scale", &self.reward_scale, "a finite number above 0"));
         }
+        self.prioritized.map_or(Ok(()), |prioritized| prioritized.validate())?;
         self.epsilon.validate()
+    }
+}
+
+impl PrioritizedConfig {
+    fn validate(&self) -> Result<(), ParamError> {
+        unit("train.prioritized.alpha", self.alpha, "a number from 0 to 1")?;
+        unit("train.prioritized.beta_start", self.beta_start, "a number from 0 to 1")
     }
 }
 
 impl EpsilonConfig {
     fn validate(&self) -> Result<(), ParamError> {
-        for (key, value) in [("train.epsilon.start", self.start), ("train.epsilon.end", self.end)] {
-            if !(0.0..=1.0).contains(&value) {
-                return Err(invalid(key, &value, "a probability from 0 to 1"));
-            }
-        }
+        unit("train.epsilon.start", self.start, "a probability from 0 to 1")?;
+        unit("train.epsilon.end", self.end, "a probability from 0 to 1")?;
         within("train.epsilon.decay_steps", self.decay_steps, 1, u64::MAX)
     }
 }
@@ -258,6 +316,10 @@ impl EvaluationConfig {
 
 fn learning_rate(key: &str, rate: f64) -> Result<(), ParamError> {
     if rate > 0.0 && rate <= 1.0 { Ok(()) } else { Err(invalid(key, &rate, "a number above 0 and at most 1")) }
+}
+
+fn unit(key: &str, value: f32, expected: &str) -> Result<(), ParamError> {
+    if (0.0..=1.0).contains(&value) { Ok(()) } else { Err(invalid(key, &value, expected)) }
 }
 
 fn within(key: &str, value: u64, least: u64, most: u64) -> Result<(), ParamError> {

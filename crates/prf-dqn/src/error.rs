@@ -3,6 +3,9 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
+use crate::checkpoint::{FORMAT, Writer};
+use crate::trainer::Divergence;
+
 /// An error of the learner, its replay, its checkpoints or its records.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
@@ -25,6 +28,14 @@ pub enum Error {
         /// What it is wanted for.
         expected: String,
     },
+    /// A checkpoint of another format, or a file that PRF did not write.
+    #[error("cannot use checkpoint {}: got {}, expected format {FORMAT}", path.display(), origin(writer))]
+    Format {
+        /// The file.
+        path: PathBuf,
+        /// Who wrote it, if it was PRF.
+        writer: Option<Writer>,
+    },
     /// Another process trains in the run directory.
     #[error("{} is being written by another prf", path.display())]
     Busy {
@@ -32,12 +43,22 @@ pub enum Error {
         path: PathBuf,
     },
     /// The loss became infinite or NaN.
-    #[error("the loss of update {update} is {loss}: learning has diverged")]
+    #[error("{divergence}")]
     Diverged {
-        /// Updates before.
-        update: u64,
-        /// The loss.
-        loss: f32,
+        /// What was found.
+        divergence: Box<Divergence>,
+        /// The directory with the network and the batch of that moment, unless it could not be written.
+        saved: Option<PathBuf>,
+    },
+    /// A reward that cannot be learned from.
+    #[error("the reward of environment {environment} in step {step} is {reward}, expected a finite number")]
+    Reward {
+        /// The environment's number, from 0.
+        environment: usize,
+        /// The step, over all environments, from 1.
+        step: u64,
+        /// The reward.
+        reward: f32,
     },
     /// A device that this libtorch or this machine does not offer.
     #[error("device {got} is not available, expected {expected}")]
@@ -93,6 +114,12 @@ impl Error {
     pub(crate) fn mismatch(path: impl Into<PathBuf>, got: impl fmt::Display, expected: impl fmt::Display) -> Self {
         Self::Mismatch { path: path.into(), got: got.to_string(), expected: expected.to_string() }
     }
+}
+
+fn origin(writer: &Option<Writer>) -> String {
+    writer.as_ref().map_or("a file that prf did not write".to_owned(), |Writer { format, prf_version }| {
+        format!("format {format} of prf {prf_version}")
+    })
 }
 
 /// A result whose error is [`enum@Error`].

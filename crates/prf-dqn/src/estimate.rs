@@ -10,7 +10,7 @@ use crate::compute::Compute;
 use crate::config::RunConfig;
 use crate::error::Result;
 use crate::learner::Learner;
-use crate::replay::{Batch, Replay};
+use crate::replay::Batch;
 use crate::trainer::architecture;
 
 /// Calls that are not timed, and those that are.
@@ -36,7 +36,7 @@ impl Estimate {
     pub fn of(config: &RunConfig, goal: Option<&Goal>, device: tch::Device) -> Result<Self> {
         let train = &config.train;
         let mut task = Task::new(&config.task(), goal)?;
-        let architecture = architecture(&task)?;
+        let architecture = architecture(&task, train.dueling)?;
         let frame_len = task.observation().len();
         let compute = Compute { device, precision: train.precision };
         let mut learner = Learner::new(architecture, train.learner(), compute, &mut stream(0, "estimate", 0))?;
@@ -48,6 +48,7 @@ impl Estimate {
             actions: vec![0; count],
             rewards: vec![0.0; count],
             discounts: vec![train.gamma; count],
+            ..Batch::default()
         };
         let update_s = seconds_each(|| learner.update(&batch, 1e-4).map(drop))?;
         let states = vec![0; train.environments * frame_len];
@@ -60,11 +61,7 @@ impl Estimate {
             train.steps.or(train.episodes.map(|episodes| episodes.saturating_mul(task.spec().limit_steps.into())));
         let steps = steps.unwrap_or(0);
         let seconds_a_step = update_s / train.steps_per_update as f64 + acting_s / train.environments as f64 + step_s;
-        Ok(Self {
-            replay_bytes: Replay::memory_bytes(train.replay_steps, train.environments, frame_len),
-            steps,
-            seconds: steps as f64 * seconds_a_step,
-        })
+        Ok(Self { replay_bytes: train.replay_bytes(frame_len), steps, seconds: steps as f64 * seconds_a_step })
     }
 }
 

@@ -1,11 +1,11 @@
 //! One update of the network: double DQN targets, Huber loss, Adam.
 
 use prf_envs::rng::ChaCha8Rng;
-use tch::{Reduction, Tensor, no_grad};
+use tch::{Kind, Reduction, Tensor, no_grad};
 
 use crate::compute::Compute;
 use crate::error::Result;
-use crate::network::{Architecture, QNetwork};
+use crate::network::{Architecture, QNetwork, tensor_to_vec};
 use crate::optimizer::Adam;
 use crate::replay::Batch;
 
@@ -44,6 +44,8 @@ pub struct Inputs {
     rewards: Tensor,
     /// Shape [n].
     discounts: Tensor,
+    /// Of the losses, shape [n]; absent where all count the same.
+    weights: Option<Tensor>,
 }
 
 impl Learner {
@@ -70,10 +72,12 @@ impl Learner {
         self.compute
     }
 
-    /// Learns from a batch and returns its loss: the mean Huber loss (δ = 1) of
+    /// Learns from a batch by its loss: the mean, weighted by the batch's weights if it has any, of the Huber loss (δ = 1) of
     /// `c·r + γⁿ·Q_target(s′, a′) − Q(s, a)`, with `a′` the best action of the online network (double) or of the target,
     /// and `c` the reward scale.
-    pub fn update(&mut self, batch: &Batch, learning_rate: f64) -> Result<f32> {
+    ///
+    /// From a loss that is infinite or NaN nothing is learned: the network stays as it was.
+    pub fn update(&mut self, batch: &Batch, learning_rate: f64) -> Result<Update> {
         let inputs = self.inputs(batch)?;
         self.update_from(&inputs, learning_rate)
     }
@@ -88,22 +92,30 @@ impl Learner {
             actions: Tensor::f_from_slice(&batch.actions)?.f_to_device(device)?.f_unsqueeze(1)?,
             rewards: numbers(&batch.rewards)?.f_mul_scalar(self.settings.reward_scale)?,
             discounts: numbers(&batch.discounts)?,
+            weights: if batch.weights.is_empty() { None } else { Some(numbers(&batch.weights)?) },
         })
     }
 
     /// As [`update`](Learner::update), from what [`inputs`](Learner::inputs) gave.
-    pub fn update_from(&mut self, inputs: &Inputs, learning_rate: f64) -> Result<f32> {
+    pub fn update_from(&mut self, inputs: &Inputs, learning_rate: f64) -> Result<Update> {
         let targets = no_grad(|| self.targets(inputs))?;
         let values = self.online.forward(&inputs.states)?.f_gather(1, &inputs.actions, false)?.f_squeeze_dim(1)?;
-        let loss = values.f_smooth_l1_loss(&targets, Reduction::Mean, 1.0)?;
-        let gradients = Tensor::f_run_backward(&[&loss], self.online.leaves(), false, false)?;
-        self.optimizer.step(self.online.parameters_mut(), &gradients, learning_rate)?;
-
-        self.updates += 1;
-        if self.updates.is_multiple_of(self.settings.target_every_updates) {
-            self.target.copy_from(&self.online)?;
+        let mean_loss = match &inputs.weights {
+            None => values.f_smooth_l1_loss(&targets, Reduction::Mean, 1.0)?,
+            Some(weights) => {
+                values.f_smooth_l1_loss(&targets, Reduction::None, 1.0)?.f_mul(weights)?.f_mean(Kind::Float)?
+            }
+        };
+        let loss = mean_loss.f_double_value(&[])? as f32;
+        if loss.is_finite() {
+            let gradients = Tensor::f_run_backward(&[&mean_loss], self.online.leaves(), false, false)?;
+            self.optimizer.step(self.online.parameters_mut(), &gradients, learning_rate)?;
+            self.updates += 1;
+            if self.updates.is_multiple_of(self.settings.target_every_updates) {
+                self.target.copy_from(&self.online)?;
+            }
         }
-        Ok(loss.f_double_value(&[])? as f32)
+        Ok(Update { loss, values: values.f_detach()?, targets })
     }
 
     fn targets(&self, inputs: &Inputs) -> Result<Tensor> {
@@ -119,6 +131,32 @@ impl Learner {
     }
 }
 
+/// What an update found, before it changed anything.
+#[derive(Debug)]
+pub struct Update {
+    /// The batch's loss.
+    pub loss: f32,
+    values: Tensor,
+    targets: Tensor,
+}
+
+impl Update {
+    /// The values Q(s, a) of the transitions, n.
+    pub fn values(&self) -> Result<Vec<f32>> {
+        tensor_to_vec(&self.values)
+    }
+
+    /// What these values should have been, n.
+    pub fn targets(&self) -> Result<Vec<f32>> {
+        tensor_to_vec(&self.targets)
+    }
+
+    /// By how much the values were too low, n.
+    pub fn errors(&self) -> Result<Vec<f32>> {
+        tensor_to_vec(&self.targets.f_sub(&self.values)?)
+    }
+}
+
 /// The action of the highest value of each row; the first of equals.
 pub fn greedy_actions(values: &[f32], actions: usize) -> impl Iterator<Item = usize> + '_ {
     values.chunks_exact(actions).map(move |row| {
@@ -131,15 +169,14 @@ pub fn greedy_actions(values: &[f32], actions: usize) -> impl Iterator<Item = us
 mod tests {
     use super::*;
     use crate::compute::Precision;
-    use crate::network::tensor_to_vec;
     use prf_envs::rng::{stream, unit_f32};
 
-    fn learner(double: bool) -> Learner {
-        learner_in(double, Compute::PLAIN)
+    fn learner(double: bool, dueling: bool) -> Learner {
+        learner_in(double, dueling, Compute::PLAIN)
     }
 
-    fn learner_in(double: bool, compute: Compute) -> Learner {
-        let architecture = Architecture { input: [84, 84], actions: 3 };
+    fn learner_in(double: bool, dueling: bool, compute: Compute) -> Learner {
+        let architecture = Architecture { input: [84, 84], actions: 3, dueling };
         let settings = LearnerSettings { double, reward_scale: 0.5, target_every_updates: 1000 };
         Learner::new(architecture, settings, compute, &mut stream(3, "network", 0)).expect("learner")
     }
@@ -153,12 +190,13 @@ mod tests {
             actions: vec![0, 1, 2, 1],
             rewards: vec![1.0, -0.5, 0.0, 20.0],
             discounts: vec![0.9, 0.81, 0.0, 0.9],
+            ..Batch::default()
         }
     }
 
     #[test]
     fn parameters_are_those_of_the_published_network() {
-        let architecture = Architecture { input: [84, 84], actions: 3 };
+        let architecture = Architecture { input: [84, 84], actions: 3, dueling: false };
         let count: i64 = architecture.parameters().iter().map(|(_, shape)| shape.iter().product::<i64>()).sum();
         // 32·(8·8+1) + 64·(32·16+1) + 64·(64·9+1) + 512·(3136+1) + 3·(512+1)
         assert_eq!(count, 2_080 + 32_832 + 36_928 + 1_606_144 + 1_539);
@@ -166,10 +204,52 @@ mod tests {
     }
 
     #[test]
+    fn a_dueling_network_has_two_streams_of_512() {
+        let architecture = Architecture { input: [84, 84], actions: 3, dueling: true };
+        let count: i64 = architecture.parameters().iter().map(|(_, shape)| shape.iter().product::<i64>()).sum();
+        // The same convolutions, then twice 512·(3136+1), with 1·(512+1) for the value and 3·(512+1) for the advantages.
+        assert_eq!(count, 2_080 + 32_832 + 36_928 + 2 * 1_606_144 + 513 + 1_539);
+    }
+
+    #[test]
+    fn the_values_of_a_dueling_network_are_v_plus_a_minus_its_mean() {
+        let architecture = Architecture { input: [36, 36], actions: 2, dueling: true };
+        let shapes = architecture.parameters();
+        let mut values: Vec<f32> =
+            shapes.iter().flat_map(|(_, shape)| vec![0.0; shape.iter().product::<i64>() as usize]).collect();
+        // Every hidden unit is 1, whatever the picture: the value is 512 · 0.01 + 0.5, the advantages are 512 · 0.02 + 1 and 3.
+        let mut rest = values.as_mut_slice();
+        for (name, shape) in &shapes {
+            let (layer, tail) = rest.split_at_mut(shape.iter().product::<i64>() as usize);
+            match name.as_str() {
+                "value.hidden.bias" | "advantage.hidden.bias" => layer.fill(1.0),
+                "value.output.weight" => layer.fill(0.01),
+                "value.output.bias" => layer.fill(0.5),
+                "advantage.output.weight" => layer[..512].fill(0.02),
+                "advantage.output.bias" => layer.copy_from_slice(&[1.0, 3.0]),
+                _ => {}
+            }
+            rest = tail;
+        }
+        let network = QNetwork::from_flat(architecture, &values, Compute::PLAIN).expect("network");
+        let found = network.q_values(&[7; 36 * 36], 1).expect("values");
+        let (value, advantages) = (5.62, [11.24, 3.0]);
+        for (found, advantage) in found.iter().zip(advantages) {
+            let expected = value + advantage - (11.24 + 3.0) / 2.0;
+            assert!((found - expected).abs() < 1e-4, "{found} should be {expected}");
+        }
+    }
+
+    #[test]
     fn loss_is_the_huber_loss_of_the_double_dqn_target() {
-        for double in [false, true] {
-            let mut learner = learner(double);
-            let batch = batch();
+        for (double, dueling, weights) in [
+            (false, false, vec![]),
+            (true, false, vec![]),
+            (true, true, vec![]),
+            (true, false, vec![1.0, 0.5, 0.25, 0.1]),
+        ] {
+            let mut learner = learner(double, dueling);
+            let batch = Batch { weights: weights.clone(), ..batch() };
             // A target network that differs, so that choosing and valuing the action can be told apart.
             let other =
                 QNetwork::new(learner.online.architecture().clone(), Compute::PLAIN, &mut stream(9, "network", 0));
@@ -180,24 +260,51 @@ mod tests {
             let slow = tensor_to_vec(&learner.target.forward(&pictures).expect("forward")).expect("values");
             let chooser = if double { &online } else { &slow };
             let mut expected = 0.0;
+            let mut errors = Vec::new();
             for (row, best) in greedy_actions(chooser, 3).enumerate() {
                 let target = 0.5 * batch.rewards[row] + batch.discounts[row] * slow[row * 3 + best];
-                let error = (target - now[row * 3 + batch.actions[row] as usize]).abs();
-                expected += if error < 1.0 { 0.5 * error * error } else { error - 0.5 } / 4.0;
+                errors.push(target - now[row * 3 + batch.actions[row] as usize]);
+                let error = errors[row].abs();
+                let huber = if error < 1.0 { 0.5 * error * error } else { error - 0.5 };
+                expected += weights.get(row).unwrap_or(&1.0) * huber / 4.0;
             }
-            let loss = learner.update(&batch, 1e-4).expect("update");
-            assert!((loss - expected).abs() < 1e-4, "loss {loss}, by hand {expected}");
+            let update = learner.update(&batch, 1e-4).expect("update");
+            assert!((update.loss - expected).abs() < 1e-4, "loss {}, by hand {expected}", update.loss);
+            let found = update.errors().expect("errors");
+            assert!(found.iter().zip(&errors).all(|(a, b)| (a - b).abs() < 1e-4), "{found:?}, by hand {errors:?}");
+        }
+    }
+
+    #[test]
+    fn a_transition_of_no_weight_teaches_nothing() {
+        let (mut whole, mut part) = (learner(true, false), learner(true, false));
+        let weighted = Batch { weights: vec![1.0, 1.0, 0.0, 0.0], ..batch() };
+        let mut other = Batch { rewards: vec![1.0, -0.5, 9.0, -9.0], ..batch() };
+        other.weights.clone_from(&weighted.weights);
+        whole.update(&weighted, 1e-3).expect("update");
+        part.update(&other, 1e-3).expect("update");
+        assert_eq!(whole.online.to_vec().expect("values"), part.online.to_vec().expect("values"));
+    }
+
+    #[test]
+    fn nothing_is_learned_from_a_loss_that_is_no_number() {
+        for reward in [f32::NAN, f32::INFINITY] {
+            let mut learner = learner(true, false);
+            let before = learner.online.to_vec().expect("values");
+            let update = learner.update(&Batch { rewards: vec![reward; 4], ..batch() }, 1e-3).expect("update");
+            assert!(!update.loss.is_finite() && update.targets().expect("targets").iter().all(|t| !t.is_finite()));
+            assert_eq!((learner.updates, learner.online.to_vec().expect("values")), (0, before));
         }
     }
 
     #[test]
     fn bf16_learns_nearly_the_same_and_keeps_its_parameters_exact() {
-        let mut plain = learner(true);
-        let mut short = learner_in(true, Compute { precision: Precision::Bf16, ..Compute::PLAIN });
+        let mut plain = learner(true, false);
+        let mut short = learner_in(true, false, Compute { precision: Precision::Bf16, ..Compute::PLAIN });
         assert_eq!(short.online.to_vec().expect("values"), plain.online.to_vec().expect("values"));
-        let (mut first, mut last) = (0.0, [0.0; 2]);
+        let (mut first, mut last) = (0.0, [0.0f32; 2]);
         for update in 0..30 {
-            last = [&mut plain, &mut short].map(|learner| learner.update(&batch(), 1e-3).expect("update"));
+            last = [&mut plain, &mut short].map(|learner| learner.update(&batch(), 1e-3).expect("update").loss);
             first = if update == 0 { last[0] } else { first };
             if update == 0 {
                 assert!((last[1] - last[0]).abs() < 0.02 * last[0], "{last:?}");
@@ -211,15 +318,17 @@ mod tests {
 
     #[test]
     fn updates_fit_the_batch_and_the_target_follows_when_due() {
-        let mut learner = learner(true);
-        learner.settings.target_every_updates = 30;
-        let batch = Batch { discounts: vec![0.0; 4], ..batch() };
-        let before = learner.target.to_vec().expect("values");
-        let losses: Vec<f32> = (0..29).map(|_| learner.update(&batch, 1e-3).expect("update")).collect();
-        assert!(losses[28] < 0.5 * losses[0], "the loss went from {} to {}", losses[0], losses[28]);
-        assert_eq!(learner.target.to_vec().expect("values"), before);
-        learner.update(&batch, 1e-3).expect("update");
-        assert_eq!(learner.target.to_vec().expect("values"), learner.online.to_vec().expect("values"));
+        for dueling in [false, true] {
+            let mut learner = learner(true, dueling);
+            learner.settings.target_every_updates = 30;
+            let batch = Batch { discounts: vec![0.0; 4], ..batch() };
+            let before = learner.target.to_vec().expect("values");
+            let losses: Vec<f32> = (0..29).map(|_| learner.update(&batch, 1e-3).expect("update").loss).collect();
+            assert!(losses[28] < 0.5 * losses[0], "the loss went from {} to {}", losses[0], losses[28]);
+            assert_eq!(learner.target.to_vec().expect("values"), before);
+            learner.update(&batch, 1e-3).expect("update");
+            assert_eq!(learner.target.to_vec().expect("values"), learner.online.to_vec().expect("values"));
+        }
     }
 
     #[test]

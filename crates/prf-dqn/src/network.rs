@@ -1,23 +1,38 @@
-//! The Q-network of Mnih et al. (Nature, 2015) on one picture, with all parameters in one flat tensor.
+//! The Q-network of Mnih et al. (Nature, 2015) on one picture, plain or dueling (Wang et al., 2016), with all parameters in
+//! one flat tensor.
+
+use std::fmt;
 
 use prf_envs::rng::ChaCha8Rng;
+use serde::{Deserialize, Serialize};
 use tch::{Device, Kind, Tensor, no_grad};
 
 use crate::compute::Compute;
 use crate::error::Result;
 
+mod blocks;
+
 /// One convolution: output channels, kernel side, stride.
 const CONVOLUTIONS: [(i64, i64, i64); 3] = [(32, 8, 4), (64, 4, 2), (64, 3, 1)];
-/// Units of the hidden fully connected layer.
+/// Units of each hidden fully connected layer.
 const HIDDEN_UNITS: i64 = 512;
+/// Weights of the first convolution, which lie in front of all other parameters.
+const FIRST_KERNELS: usize = (CONVOLUTIONS[0].0 * CONVOLUTIONS[0].1 * CONVOLUTIONS[0].1) as usize;
+/// Their shape as kernels of blocks.
+const BLOCK_KERNELS: [i64; 4] =
+    [CONVOLUTIONS[0].0, blocks::CHANNELS as i64, blocks::KERNEL as i64, blocks::KERNEL as i64];
 
 /// What decides the shape of the network.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Architecture {
     /// Height and width of the input, in pixels.
     pub input: [i64; 2],
     /// Number of actions, the width of the output.
     pub actions: i64,
+    /// Whether a value and an advantage stream, each with a hidden layer of its own, follow the convolutions, in place of
+    /// a single one.
+    pub dueling: bool,
 }
 
 impl Architecture {
@@ -35,14 +50,26 @@ impl Architecture {
             (height, width) = ((height - kernel) / stride + 1, (width - kernel) / stride + 1);
             channels = outputs;
         }
-        push("hidden", vec![HIDDEN_UNITS, channels * height * width]);
-        push("output", vec![self.actions, HIDDEN_UNITS]);
+        let features = channels * height * width;
+        let streams =
+            if self.dueling { vec![("value.", 1), ("advantage.", self.actions)] } else { vec![("", self.actions)] };
+        for (stream, outputs) in streams {
+            push(&format!("{stream}hidden"), vec![HIDDEN_UNITS, features]);
+            push(&format!("{stream}output"), vec![outputs, HIDDEN_UNITS]);
+        }
         parameters
     }
 
     /// The smallest height and width that the convolutions accept, in pixels.
     pub fn smallest_input() -> i64 {
         CONVOLUTIONS.into_iter().rev().fold(1, |side, (_, kernel, stride)| (side - 1) * stride + kernel)
+    }
+}
+
+impl fmt::Display for Architecture {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let ([height, width], kind) = (self.input, if self.dueling { "dueling " } else { "" });
+        write!(f, "a {kind}network for {height}×{width} px and {} actions", self.actions)
     }
 }
 
@@ -58,7 +85,7 @@ pub struct QNetwork {
 /// A network's parameters, shape [n].
 #[derive(Debug)]
 pub struct Parameters {
-    /// As they are learned and saved, f32.
+    /// As they are learned, f32; the first kernels are of blocks.
     pub flat: Tensor,
     /// The same, rounded to the numbers that are computed with, if these are others.
     pub rounded: Option<Tensor>,
@@ -110,11 +137,14 @@ impl QNetwork {
 
     /// A network with the given parameters, in the order of [`Architecture::parameters`].
     pub fn from_flat(architecture: Architecture, values: &[f32], compute: Compute) -> Result<Self> {
-        let parameters = Parameters::new(values, compute)?;
+        let mut values = values.to_vec();
+        blocks::of_kernels(&mut values[..FIRST_KERNELS]);
+        let parameters = Parameters::new(&values, compute)?;
         let mut leaves = Vec::new();
         let mut offset = 0;
-        for (_, shape) in architecture.parameters() {
+        for (index, (_, shape)) in architecture.parameters().into_iter().enumerate() {
             let count = shape.iter().product::<i64>();
+            let shape = if index == 0 { BLOCK_KERNELS.to_vec() } else { shape };
             let part = parameters.computed().f_narrow(0, offset, count)?.f_view(&shape[..])?;
             leaves.push(part.f_detach()?.f_set_requires_grad(true)?);
             offset += count;
@@ -123,20 +153,27 @@ impl QNetwork {
         Ok(Self { architecture, parameters, leaves })
     }
 
-    /// Q-values of a batch: pictures in [0, 1], shape [n, 1, h, w], to values of shape [n, actions], f32.
+    /// Q-values of a batch: what [`pictures`](QNetwork::pictures) gives, to values of shape [n, actions], f32.
+    ///
+    /// A dueling network gives V + A − mean A (equation 9 of Wang et al.).
     pub fn forward(&self, pictures: &Tensor) -> Result<Tensor> {
         let mut x = pictures.shallow_clone();
         let mut leaves = self.leaves.chunks_exact(2);
-        for ((_, _, stride), parameters) in CONVOLUTIONS.into_iter().zip(&mut leaves) {
+        for (index, parameters) in (&mut leaves).take(CONVOLUTIONS.len()).enumerate() {
             let [weight, bias] = parameters else { unreachable!("chunks of two") };
+            // Of blocks, the first one moves by one.
+            let stride = if index == 0 { 1 } else { CONVOLUTIONS[index].2 };
             x = x.f_conv2d(weight, Some(bias), [stride; 2], [0; 2], [1; 2], 1)?.f_relu_()?;
         }
-        x = x.f_flatten(1, -1)?;
-        let [hidden_weight, hidden_bias, output_weight, output_bias] = &self.leaves[CONVOLUTIONS.len() * 2..] else {
-            unreachable!("two fully connected layers")
-        };
-        x = x.f_linear(hidden_weight, Some(hidden_bias))?.f_relu_()?;
-        Ok(x.f_linear(output_weight, Some(output_bias))?.f_to_kind(Kind::Float)?)
+        let features = x.f_flatten(1, -1)?;
+        let streams = &self.leaves[CONVOLUTIONS.len() * 2..];
+        if !self.architecture.dueling {
+            return fully_connected(&features, streams);
+        }
+        let (value, advantage) = streams.split_at(streams.len() / 2);
+        let (value, advantage) = (fully_connected(&features, value)?, fully_connected(&features, advantage)?);
+        let mean = advantage.f_mean_dim([1i64].as_slice(), true, Kind::Float)?;
+        Ok(advantage.f_add(&value.f_sub(&mean)?)?)
     }
 
     /// Q-values of `count` pictures of h × w bytes each: count × actions values, row by row, outside the autograd graph.
@@ -144,11 +181,13 @@ impl QNetwork {
         no_grad(|| tensor_to_vec(&self.forward(&self.pictures(bytes, count)?)?))
     }
 
-    /// `count` pictures of h × w bytes each as the network's input, in [0, 1], shape [count, 1, h, w].
+    /// `count` pictures of h × w bytes each as the network's input: blocks of 4×4 pixels, in [0, 1], shape
+    /// [count, 16, h / 4, w / 4], the channels of a block side by side in memory.
     pub fn pictures(&self, bytes: &[u8], count: usize) -> Result<Tensor> {
         let [height, width] = self.architecture.input;
-        let bytes =
-            Tensor::f_from_slice(bytes)?.f_to_device(self.device())?.f_view([count as i64, 1, height, width])?;
+        let bytes = Tensor::f_from_slice(&blocks::of_pictures(bytes, [height as usize, width as usize]))?;
+        let shape = [count as i64, blocks::along(height), blocks::along(width), blocks::CHANNELS as i64];
+        let bytes = bytes.f_to_device(self.device())?.f_view(shape)?.f_permute([0, 3, 1, 2])?;
         Ok(bytes.f_to_kind(self.parameters.computed().kind())?.f_mul_scalar_(1.0 / 255.0)?)
     }
 
@@ -179,8 +218,19 @@ impl QNetwork {
 
     /// A copy of the parameters, in the order of [`Architecture::parameters`].
     pub fn to_vec(&self) -> Result<Vec<f32>> {
-        tensor_to_vec(&self.parameters.flat)
+        let mut values = tensor_to_vec(&self.parameters.flat)?;
+        blocks::to_kernels(&mut values[..FIRST_KERNELS]);
+        Ok(values)
     }
+}
+
+/// What the hidden and the output layer of a stream make of `features`.
+fn fully_connected(features: &Tensor, parameters: &[Tensor]) -> Result<Tensor> {
+    let [hidden_weight, hidden_bias, output_weight, output_bias] = parameters else {
+        unreachable!("weights and biases of two layers")
+    };
+    let hidden = features.f_linear(hidden_weight, Some(hidden_bias))?.f_relu_()?;
+    Ok(hidden.f_linear(output_weight, Some(output_bias))?.f_to_kind(Kind::Float)?)
 }
 
 /// Copies a tensor's values to the host.

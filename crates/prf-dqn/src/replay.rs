@@ -6,7 +6,11 @@
 
 use prf_envs::rng::{ChaCha8Rng, below};
 
+mod prioritized;
 pub(crate) mod segment;
+mod sum_tree;
+
+use prioritized::Priorities;
 
 /// What followed the action of a row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -41,6 +45,10 @@ pub struct Batch {
     pub rewards: Vec<f32>,
     /// What the value of that state counts: γ to the power of the steps in between, 0 after a terminal step, n.
     pub discounts: Vec<f32>,
+    /// What each transition's loss counts, in (0, 1], n; empty where all count alike.
+    pub weights: Vec<f32>,
+    /// Where the transitions lie, for [`Replay::set_errors`], n; empty where they were drawn uniformly.
+    pub places: Vec<usize>,
 }
 
 /// How far a transition reaches.
@@ -58,6 +66,8 @@ pub struct Replay {
     frame_len: usize,
     rows_per_lane: usize,
     lanes: Vec<Lane>,
+    /// By which transitions are drawn, unless they are drawn uniformly.
+    priorities: Option<Priorities>,
 }
 
 #[derive(Debug)]
@@ -82,7 +92,7 @@ impl Replay {
             outcomes: vec![Outcome::LastState; rows_per_lane],
             written: 0,
         };
-        Self { frame_len, rows_per_lane, lanes: (0..lanes).map(|_| lane()).collect() }
+        Self { frame_len, rows_per_lane, lanes: (0..lanes).map(|_| lane()).collect(), priorities: None }
     }
 
     /// Memory that [`Replay::new`] will take once it is full, in bytes.
@@ -93,14 +103,17 @@ impl Replay {
 
     /// Appends a step of environment `lane`: the state acted in, the action, its reward and what followed.
     pub fn push(&mut self, lane: usize, state: &[u8], action: u8, reward: f32, outcome: Outcome) {
-        let (rows, frame_len) = (self.rows_per_lane, self.frame_len);
-        let lane = &mut self.lanes[lane];
+        let (index, rows, frame_len) = (lane, self.rows_per_lane, self.frame_len);
+        let lane = &mut self.lanes[index];
         let at = (lane.written % rows as u64) as usize;
         lane.frames[at * frame_len..][..frame_len].copy_from_slice(state);
         lane.actions[at] = action;
         lane.rewards[at] = reward;
         lane.outcomes[at] = outcome;
         lane.written += 1;
+        if let Some(priorities) = &mut self.priorities {
+            priorities.follow(index, lane);
+        }
     }
 
     /// Appends the state in which environment `lane` was cut off.
@@ -161,8 +174,18 @@ struct Transition {
 }
 
 impl Lane {
+    fn rows(&self) -> usize {
+        self.outcomes.len()
+    }
+
     fn at(&self, row: u64) -> usize {
-        (row % self.outcomes.len() as u64) as usize
+        (row % self.rows() as u64) as usize
+    }
+
+    /// The newest row that lies at `at`; one has to.
+    fn newest_at(&self, at: usize) -> u64 {
+        let newest = self.written - 1;
+        newest - ((self.at(newest) + self.rows() - at) % self.rows()) as u64
     }
 
     /// What came of the action of `row`, or none when `row` has no action or its future is not yet known.
@@ -194,6 +217,8 @@ impl Batch {
         self.actions.clear();
         self.rewards.clear();
         self.discounts.clear();
+        self.weights.clear();
+        self.places.clear();
     }
 
     /// Number of transitions.

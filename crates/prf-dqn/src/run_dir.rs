@@ -8,14 +8,17 @@ use serde::Serialize;
 
 use crate::config::RunConfig;
 use crate::error::{Error, Result};
-use crate::files::write_whole;
-use crate::record::TimeShares;
+use crate::files::{PARTIAL, write_whole};
+use crate::record::{JsonlRecorder, TimeShares};
 
 /// The goal's picture, and the mask of one that has it.
 const GOAL: &str = "goal.png";
 const MASK: &str = "mask.png";
+/// The records, whose lock is that of the run.
+const METRICS: &str = "metrics.jsonl";
 
-/// A run's directory: `config.toml`, `goal.png`, `mask.png`, `manifest.json`, `metrics.jsonl`, `checkpoints/`, `replay/`.
+/// A run's directory: `config.toml`, `goal.png`, `mask.png`, `manifest.json`, `metrics.jsonl`, `checkpoints/`, `replay/`; after
+/// a divergence `diverged/`.
 #[derive(Debug, Clone)]
 pub struct RunDir {
     path: PathBuf,
@@ -49,18 +52,15 @@ impl RunDir {
     /// the goal's pictures into it, so that the run depends on no other file.
     ///
     /// # Errors
-    /// [`Error::Io`] when the directory is there and not empty, or cannot be written.
+    /// [`Error::Io`] when the directory is there and not empty, or cannot be written; [`Error::Busy`] when another process
+    /// begins it at this moment.
     pub fn create(path: &Path, config: &RunConfig, goal: Option<&Goal>) -> Result<Self> {
         let run = Self { path: path.to_owned() };
-        // A goal alone is what an interrupted beginning leaves.
-        let begun = |entry: std::io::Result<fs::DirEntry>| {
-            entry.is_ok_and(|entry| entry.file_name() != GOAL && entry.file_name() != MASK)
-        };
-        if fs::read_dir(path).is_ok_and(|mut entries| entries.any(begun)) || path.is_file() {
-            let source = std::io::Error::from(std::io::ErrorKind::AlreadyExists);
-            return Err(Error::Io { action: "make", path: path.to_owned(), source });
-        }
+        run.expect_nothing()?;
         fs::create_dir_all(path).map_err(Error::io("make", path))?;
+        // Of two processes that came so far, the one with this lock goes on. Once it is given back there is a run.
+        let _lock = JsonlRecorder::open(&run.metrics_path())?;
+        run.expect_nothing()?;
         let mut config = config.clone();
         if let Some(goal) = goal {
             prf_core::io::write_frame(goal.picture.view(), run.path.join(GOAL))?;
@@ -74,6 +74,24 @@ impl RunDir {
         // The configuration makes the directory a run, so it comes last.
         write_whole(&run.config_path(), text.as_bytes())?;
         Ok(run)
+    }
+
+    /// Whether nothing is there but what an interrupted beginning leaves.
+    fn expect_nothing(&self) -> Result<()> {
+        let leftover = |entry: &fs::DirEntry| {
+            let name = entry.file_name();
+            let is_empty = || entry.metadata().is_ok_and(|metadata| metadata.len() == 0);
+            name == GOAL
+                || name == MASK
+                || name.to_string_lossy().starts_with(PARTIAL)
+                || (name == METRICS && is_empty())
+        };
+        let begun = |entry: std::io::Result<fs::DirEntry>| entry.is_ok_and(|entry| !leftover(&entry));
+        if fs::read_dir(&self.path).is_ok_and(|mut entries| entries.any(begun)) || self.path.is_file() {
+            let source = std::io::Error::from(std::io::ErrorKind::AlreadyExists);
+            return Err(Error::Io { action: "make", path: self.path.clone(), source });
+        }
+        Ok(())
     }
 
     /// The run directory at `path`, made earlier.
@@ -93,7 +111,7 @@ impl RunDir {
 
     /// The records of the run, one JSON object a line.
     pub fn metrics_path(&self) -> PathBuf {
-        self.path.join("metrics.jsonl")
+        self.path.join(METRICS)
     }
 
     /// Writes `manifest.json`.

@@ -1,6 +1,6 @@
 //! Values that change as a run goes on.
 
-use crate::config::{EpsilonConfig, TrainConfig};
+use crate::config::{EpsilonConfig, PrioritizedConfig, TrainConfig};
 
 /// The probability ε of a random action at a step.
 pub fn epsilon(config: &EpsilonConfig, step: u64) -> f32 {
@@ -12,6 +12,12 @@ pub fn epsilon(config: &EpsilonConfig, step: u64) -> f32 {
 pub fn learning_rate(config: &TrainConfig, progress: f64) -> f64 {
     let last = config.final_learning_rate.unwrap_or(config.learning_rate);
     config.learning_rate + progress.clamp(0.0, 1.0) * (last - config.learning_rate)
+}
+
+/// The exponent β of the weights that make up for priorities, after `progress` of the run, in [0, 1].
+pub fn beta(config: &PrioritizedConfig, progress: f64) -> f32 {
+    let start = f64::from(config.beta_start);
+    (start + progress.clamp(0.0, 1.0) * (1.0 - start)) as f32
 }
 
 /// How much of the run is done, in [0, 1], by whichever of steps and episodes limits it.
@@ -29,5 +35,11 @@ mod tests {
         let config = EpsilonConfig { start: 1.0, end: 0.1, decay_steps: 100 };
         let values: Vec<f32> = [0, 50, 100, 1000].into_iter().map(|step| epsilon(&config, step)).collect();
         assert_eq!(values, [1.0, 0.55, 0.1, 0.1]);
+    }
+
+    #[test]
+    fn beta_rises_linearly_to_1() {
+        let config = PrioritizedConfig { alpha: 0.6, beta_start: 0.4 };
+        assert_eq!([0.0, 0.5, 1.0, 1.5].map(|progress| beta(&config, progress)), [0.4, 0.7, 1.0, 1.0]);
     }
 }

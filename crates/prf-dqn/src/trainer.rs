@@ -6,7 +6,7 @@ use prf_core::Goal;
 use prf_envs::rng::{ChaCha8Rng, below, stream, unit_f32};
 use prf_envs::{Status, Task};
 
-use crate::checkpoint::{CheckpointStore, Model, Segment};
+use crate::checkpoint::{CheckpointStore, Model, Retention};
 use crate::compute::Compute;
 use crate::config::RunConfig;
 use crate::error::{Error, Result};
@@ -14,14 +14,16 @@ use crate::evaluate::{Spread, episode_seeds, play_greedily};
 use crate::learner::{Learner, greedy_actions};
 use crate::network::Architecture;
 use crate::record::{EvaluationRecord, Event, JsonlRecorder, Progress, Recorder, TimeShares, TrainRecord, timed};
-use crate::replay::{Batch, Outcome, Reach, Replay};
+use crate::replay::{Batch, Outcome, Replay};
 use crate::run_dir::RunDir;
 use crate::schedule;
 
+mod divergence;
 mod lane;
 mod state;
 
-use lane::{Lane, Window};
+pub use divergence::{Divergence, Figures};
+use lane::{Lane, Window, finite};
 use state::Counters;
 
 /// How [`Trainer::run`] ended.
@@ -46,8 +48,8 @@ pub struct Trainer {
     counters: Counters,
     metrics: JsonlRecorder,
     checkpoints: CheckpointStore,
-    /// The replay on disk, as of the last checkpoint.
-    segments: Vec<Segment>,
+    /// The checkpoints on disk.
+    retention: Retention,
     /// Steps at the last checkpoint.
     saved_at: Option<u64>,
     /// Reused by every step and update.
@@ -58,11 +60,11 @@ pub struct Trainer {
     window_started: Instant,
 }
 
-/// The network that a task needs.
+/// The network that a task needs, dueling or not.
 ///
 /// # Errors
 /// When the pictures of the task are too small for the convolutions.
-pub fn architecture(task: &Task) -> Result<Architecture> {
+pub fn architecture(task: &Task, dueling: bool) -> Result<Architecture> {
     let spec = task.spec();
     let least = Architecture::smallest_input() as usize;
     if spec.width < least || spec.height < least {
@@ -72,7 +74,7 @@ pub fn architecture(task: &Task) -> Result<Architecture> {
             expected: format!("at least {least}×{least} px for the network"),
         }));
     }
-    Ok(Architecture { input: [spec.height as i64, spec.width as i64], actions: spec.actions.len() as i64 })
+    Ok(Architecture { input: [spec.height as i64, spec.width as i64], actions: spec.actions.len() as i64, dueling })
 }
 
 /// Checks what only the task and this machine can tell: that the network takes the pictures, and that there is memory
@@ -81,9 +83,9 @@ pub fn architecture(task: &Task) -> Result<Architecture> {
 /// # Errors
 /// [`Error::Config`] with the key at fault.
 pub fn check(config: &RunConfig, task: &Task) -> Result<()> {
-    architecture(task)?;
     let train = &config.train;
-    let bytes = Replay::memory_bytes(train.replay_steps, train.environments, task.observation().len());
+    architecture(task, train.dueling)?;
+    let bytes = train.replay_bytes(task.observation().len());
     // Reserved memory is not touched, so this takes no time.
     Vec::<u8>::new().try_reserve_exact(bytes as usize).map_err(|_| {
         Error::Config(prf_core::Error::InvalidParam {
@@ -114,6 +116,8 @@ impl Trainer {
     }
 
     fn new(config: RunConfig, goal: Option<&Goal>, run: &RunDir, device: tch::Device) -> Result<Self> {
+        // First of all: whoever holds the records is alone in the run directory.
+        let metrics = JsonlRecorder::open(&run.metrics_path())?;
         let seed = config.seed;
         let task = config.task();
         let make = || Ok::<_, Error>(Task::new(&task, goal)?);
@@ -121,19 +125,19 @@ impl Trainer {
             .map(|index| Ok(Lane::new(make()?, stream(seed, "episodes", index as u64))))
             .collect::<Result<Vec<_>>>()?;
         let evaluation_tasks = (0..config.evaluation.episodes).map(|_| make()).collect::<Result<Vec<_>>>()?;
-        let architecture = architecture(&evaluation_tasks[0])?;
+        let architecture = architecture(&evaluation_tasks[0], config.train.dueling)?;
         let compute = Compute { device, precision: config.train.precision };
         let frame_len = (architecture.input[0] * architecture.input[1]) as usize;
         Ok(Self {
             evaluation_seeds: episode_seeds(0, "evaluation", config.evaluation.episodes),
             learner: Learner::new(architecture, config.train.learner(), compute, &mut stream(seed, "network", 0))?,
-            replay: Replay::new(config.train.replay_steps, lanes.len(), frame_len),
+            replay: config.train.replay(frame_len),
             exploration: stream(seed, "exploration", 0),
             sampling: stream(seed, "replay", 0),
             counters: Counters::default(),
-            metrics: JsonlRecorder::open(&run.metrics_path())?,
+            metrics,
             checkpoints: CheckpointStore::open(run.path())?,
-            segments: Vec::new(),
+            retention: Retention::default(),
             saved_at: None,
             states: Vec::new(),
             batch: Batch::default(),
@@ -195,13 +199,14 @@ impl Trainer {
         let states = self.states.chunks_exact(self.states.len() / self.lanes.len());
         for (index, ((lane, state), action)) in self.lanes.iter_mut().zip(states).zip(actions).enumerate() {
             let step = timed(&mut self.time.worlds_s, || lane.task.step(action))?;
+            let reward = finite(step.reward, index, self.counters.steps + 1)?;
             let outcome = match step.status {
                 Status::Running => Outcome::Continued,
                 Status::Terminated => Outcome::Terminated,
                 Status::Truncated => Outcome::Truncated,
             };
             timed(&mut self.time.replay_s, || {
-                self.replay.push(index, state, action as u8, step.reward, outcome);
+                self.replay.push(index, state, action as u8, reward, outcome);
                 if outcome == Outcome::Truncated {
                     self.replay.push_last_state(index, lane.task.observation());
                 }
@@ -236,16 +241,21 @@ impl Trainer {
         let train = &self.config.train;
         let due = self.counters.steps.saturating_sub(train.learning_starts) / train.steps_per_update;
         let rate = schedule::learning_rate(train, self.done());
-        let (size, reach) = (train.batch_size, Reach { steps: train.n_step, gamma: train.gamma });
+        let (size, reach) = (train.batch_size, train.reach());
+        let beta = train.prioritized.map(|config| schedule::beta(&config, self.done()));
         while self.learner.updates < due {
-            timed(&mut self.time.replay_s, || {
-                self.replay.sample(size, reach, &mut self.sampling, &mut self.batch);
+            timed(&mut self.time.replay_s, || match beta {
+                None => self.replay.sample(size, reach, &mut self.sampling, &mut self.batch),
+                Some(beta) => self.replay.sample_by_priority(size, beta, &mut self.sampling, &mut self.batch),
             });
-            let loss = timed(&mut self.time.updates_s, || self.learner.update(&self.batch, rate))?;
-            if !loss.is_finite() {
-                return Err(Error::Diverged { update: self.learner.updates, loss });
+            let update = timed(&mut self.time.updates_s, || self.learner.update(&self.batch, rate))?;
+            if !update.loss.is_finite() {
+                return Err(self.diverged(&update)?);
             }
-            self.counters.window.add_loss(loss);
+            if beta.is_some() {
+                self.replay.set_errors(&self.batch.places, &update.errors()?);
+            }
+            self.counters.window.add_loss(update.loss);
         }
         Ok(())
     }
@@ -332,8 +342,7 @@ impl Trainer {
 
     /// Memory that the replay takes once it is full, in bytes.
     pub fn replay_bytes(&self) -> u64 {
-        let frame_len = self.lanes[0].task.observation().len();
-        Replay::memory_bytes(self.config.train.replay_steps, self.lanes.len(), frame_len)
+        self.config.train.replay_bytes(self.lanes[0].task.observation().len())
     }
 
     /// Mean score of the last greedy evaluation.

@@ -34,6 +34,6 @@ pub use controls::{Controls, Pace};
 pub use env::{Environment, Spec, Status, Step};
 pub use error::Error;
 pub use task::{
-    EnvConfig, RewardConfig, RewardSource, StateConfig, StateKind, Task, TaskConfig, TaskStep, WindowConfig,
+    EnvConfig, RewardConfig, RewardForm, RewardSource, StateConfig, StateKind, Task, TaskConfig, TaskStep, WindowConfig,
 };
 pub use vector::{Command, Results, VectorTask};

@@ -11,7 +11,7 @@ struct Entry {
     page: &'static str,
     controls: Controls,
     limit_steps: u32,
-    make: fn(u32) -> Result<Box<dyn Environment>, Error>,
+    make: fn(&EnvConfig) -> Result<Box<dyn Environment>, Error>,
 }
 
 const WORLDS: [Entry; 4] = [
@@ -21,7 +21,7 @@ const WORLDS: [Entry; 4] = [
         page: "docs/worlds/breakout.md",
         controls: Controls { pace: Pace::Held, idle_action: breakout::STAY },
         limit_steps: breakout::LIMIT_STEPS,
-        make: |limit_steps| Ok(Box::new(Breakout::new(limit_steps)?)),
+        make: |config| Ok(Box::new(Breakout::new(never_solved(config)?)?)),
     },
     Entry {
         name: flappy::NAME,
@@ -29,7 +29,7 @@ const WORLDS: [Entry; 4] = [
         page: "docs/worlds/flappy.md",
         controls: Controls { pace: Pace::Impulses, idle_action: flappy::GLIDE },
         limit_steps: flappy::LIMIT_STEPS,
-        make: |limit_steps| Ok(Box::new(Flappy::new(limit_steps)?)),
+        make: |config| Ok(Box::new(Flappy::new(never_solved(config)?)?)),
     },
     Entry {
         name: Expression::Happy.name(),
@@ -37,7 +37,7 @@ const WORLDS: [Entry; 4] = [
         page: "docs/worlds/kobian.md",
         controls: Controls { pace: Pace::TurnBased, idle_action: kobian::REST },
         limit_steps: kobian::LIMIT_STEPS,
-        make: |limit_steps| Ok(Box::new(Kobian::new(Expression::Happy, limit_steps)?)),
+        make: |config| face(Expression::Happy, config),
     },
     Entry {
         name: Expression::Surprise.name(),
@@ -45,9 +45,28 @@ const WORLDS: [Entry; 4] = [
         page: "docs/worlds/kobian.md",
         controls: Controls { pace: Pace::TurnBased, idle_action: kobian::REST },
         limit_steps: kobian::LIMIT_STEPS,
-        make: |limit_steps| Ok(Box::new(Kobian::new(Expression::Surprise, limit_steps)?)),
+        make: |config| face(Expression::Surprise, config),
     },
 ];
+
+/// The step limit of a world whose episodes never end by success.
+fn never_solved(config: &EnvConfig) -> Result<u32, Error> {
+    match config.solved_within {
+        None => Ok(config.limit_steps),
+        Some(actions) => {
+            let expected = format!("nothing, because \"{}\" has no end by success: remove it", config.name);
+            Err(Error::param("env.solved_within", actions.to_string(), expected))
+        }
+    }
+}
+
+fn face(expression: Expression, config: &EnvConfig) -> Result<Box<dyn Environment>, Error> {
+    let world = Kobian::new(expression, config.limit_steps)?;
+    Ok(Box::new(match config.solved_within {
+        None => world,
+        Some(actions) => world.solved_within(actions)?,
+    }))
+}
 
 /// The names of all worlds.
 pub fn names() -> impl Iterator<Item = &'static str> {
@@ -57,12 +76,13 @@ pub fn names() -> impl Iterator<Item = &'static str> {
 /// The world that `config` describes, before its first episode.
 ///
 /// # Errors
-/// An unknown name, or a step limit of 0; the keys are `env.name` and `env.limit_steps`.
+/// An unknown name, a step limit of 0, or a success that this world doesn't have or begins with; the keys are `env.name`,
+/// `env.limit_steps` and `env.solved_within`.
 pub fn make(config: &EnvConfig) -> Result<Box<dyn Environment>, Error> {
     let Some(world) = find(&config.name) else {
         return Err(Error::param("env.name", format!("\"{}\"", config.name), expected_names()));
     };
-    (world.make)(config.limit_steps)
+    (world.make)(config)
 }
 
 /// The step limit that the world called `name` has unless told otherwise; `None` if there is no such world.

@@ -12,7 +12,7 @@ fn breakout(limit_steps: u32) -> Box<dyn Environment> {
 }
 
 fn make(limit_steps: u32) -> Result<Box<dyn Environment>, Error> {
-    registry::make(&EnvConfig { name: "breakout".to_owned(), limit_steps })
+    registry::make(&EnvConfig { limit_steps, ..EnvConfig::new("breakout") })
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! The tables of a task in a config file.
 
 use prf_core::{CellSize, DeltaSchedule, DescriptorKind, DescriptorParams, DistanceScale, MatchMethod, Norm};
-use prf_envs::{EnvConfig, RewardConfig, RewardSource, StateConfig, StateKind, TaskConfig};
+use prf_envs::{EnvConfig, RewardConfig, RewardForm, RewardSource, StateConfig, StateKind, TaskConfig};
 
 const PERCEPTUAL: &str = r#"
     [env]
@@ -31,7 +31,7 @@ fn complaint(config: &TaskConfig) -> String {
 fn what_a_file_leaves_out_has_defaults() {
     let config = parse(PERCEPTUAL);
     config.validate().expect("the config is valid");
-    assert_eq!(config.env, EnvConfig { name: "breakout".to_owned(), limit_steps: 100 });
+    assert_eq!(config.env, EnvConfig { name: "breakout".to_owned(), limit_steps: 100, solved_within: None });
     assert_eq!(config.reward, RewardConfig::perceptual("goals/black.png"));
     assert_eq!(config.state, StateConfig { kind: StateKind::Ema, lambda: 0.7 });
     assert_eq!((config.reward.scale, config.reward.hog.norm), (DistanceScale::SqrtBlocks, Norm::L2));
@@ -107,6 +107,7 @@ fn each_descriptor_has_its_table_and_its_cells() {
         ("direct", "window = {}", "reward.window: got a value, expected nothing, because reward.descriptor is not"),
         ("window", "motion.threshold = 3", "reward.motion: got a value, expected nothing"),
         ("motion", "motion.tau_step = 0", "reward.motion.tau_step: got 0, expected "),
+        ("direct", "form = \"potential\"", "reward.form: got no discount, expected a learner's discount"),
     ] {
         let complaint = complaint(&parse(&text(descriptor, more)));
         assert!(complaint.starts_with(expected), "{complaint}");
@@ -164,6 +165,27 @@ fn values_out_of_range_are_named_by_their_full_key() {
         "reward.descriptor: got nothing, expected \"direct\", \"window\" or \"motion\"",
     );
     check(|c| c.reward.goal = None, "reward.goal: got nothing, expected the path of a picture of the finished task");
+    check(
+        |c| c.env.solved_within = Some(1),
+        "env.solved_within: got 1, expected nothing, because \"breakout\" has no end by success: remove it",
+    );
+    check(
+        |c| c.env = EnvConfig { solved_within: Some(8), ..EnvConfig::new("kobian-happy") },
+        "env.solved_within: got 8, expected 0 to 7, fewer than are missing at the beginning",
+    );
+    check(
+        |c| {
+            c.reward.form = RewardForm::Potential;
+            c.reward.gamma = Some(1.0);
+        },
+        "reward.form: got the discount 1, expected a learner's discount from 0 up to, but not including, 1, for \
+         \"potential\"",
+    );
+    check(
+        |c| c.reward = RewardConfig { form: RewardForm::Potential, gamma: Some(0.9), ..RewardConfig::variable() },
+        "reward.form: got a value, expected nothing, because reward.source is \"variable\": remove it, or ask for \
+         \"perceptual\"",
+    );
     check(|c| c.reward.hog.orientations = 0, "reward.hog.orientations: got 0, expected 1 to 64");
     check(|c| c.state.lambda = 1.0, "state.lambda: got 1, expected 0 or more, and below 1");
     check(|c| c.state.lambda = f32::NAN, "state.lambda: got NaN, expected 0 or more, and below 1");

@@ -6,7 +6,7 @@ use prf_envs::survey::survey;
 use prf_envs::{EnvConfig, Environment, Error, check, registry};
 
 fn make(limit_steps: u32) -> Result<Box<dyn Environment>, Error> {
-    registry::make(&EnvConfig { name: "flappy".to_owned(), limit_steps })
+    registry::make(&EnvConfig { limit_steps, ..EnvConfig::new("flappy") })
 }
 
 #[test]

@@ -18,8 +18,45 @@ fn started(expression: Expression) -> Kobian {
 fn they_conform() -> Result<(), Error> {
     for expression in EXPRESSIONS {
         check::conformance(&|limit_steps| {
-            registry::make(&EnvConfig { name: expression.name().to_owned(), limit_steps })
+            registry::make(&EnvConfig { limit_steps, ..EnvConfig::new(expression.name()) })
         })?;
+    }
+    Ok(())
+}
+
+fn solved_within(expression: Expression, actions: u32, limit_steps: u32) -> Result<Box<dyn Environment>, Error> {
+    registry::make(&EnvConfig { limit_steps, solved_within: Some(actions), ..EnvConfig::new(expression.name()) })
+}
+
+#[test]
+fn they_conform_with_an_end_by_success() -> Result<(), Error> {
+    for expression in EXPRESSIONS {
+        check::conformance(&|limit_steps| solved_within(expression, 1, limit_steps))?;
+    }
+    Ok(())
+}
+
+#[test]
+fn an_episode_ends_by_success_as_soon_as_the_face_is_near_enough() -> Result<(), Error> {
+    for (actions, steps) in [(0, 8), (1, 7), (7, 1)] {
+        for limit_steps in [steps, 40] {
+            let mut world = solved_within(Expression::Happy, actions, limit_steps)?;
+            let episode = play_episode(world.as_mut(), &mut Oracle, 0)?;
+            assert_eq!((episode.steps, episode.score), (steps, -(actions as f32)));
+            assert!(matches!(world.step(0), Err(Error::EpisodeOver { .. })));
+            let mut again = solved_within(Expression::Happy, actions, limit_steps)?;
+            again.load_state(&world.save_state())?;
+            assert_eq!(again.save_state(), world.save_state());
+        }
+        // One step fewer, and the limit comes first.
+        if steps > 1 {
+            let mut world = solved_within(Expression::Happy, actions, steps - 1)?;
+            assert!(play_episode(world.as_mut(), &mut Oracle, 0)?.score < -(actions as f32));
+            assert!(matches!(
+                solved_within(Expression::Happy, 7, steps)?.load_state(&world.save_state()),
+                Err(Error::BadState { .. })
+            ));
+        }
     }
     Ok(())
 }

@@ -4,7 +4,7 @@ use prf_core::{
     DescriptorKind, DirectDescriptor, EmaState, Frame, Goal, MotionDescriptor, MotionParams, MotionTemplate,
     TaskDescriptor,
 };
-use prf_envs::{EnvConfig, Error, RewardConfig, StateConfig, StateKind, Status, Task, TaskConfig};
+use prf_envs::{EnvConfig, Error, RewardConfig, RewardForm, StateConfig, StateKind, Status, Task, TaskConfig};
 use proptest::prelude::*;
 
 fn config(reward: RewardConfig, kind: StateKind) -> TaskConfig {
@@ -41,6 +41,78 @@ fn the_perceptual_reward_is_that_of_the_frame_after_the_action() -> Result<(), E
         assert_eq!(step.reward, descriptor.observe(frame.view())?.reward);
         assert_eq!(task.mirror(), &frame);
     }
+    Ok(())
+}
+
+/// Breakout by its black picture, rewarded by potential with γ = 0.9 and by the state, with the same descriptor.
+fn potential_and_state(kind: DescriptorKind) -> Result<(Task, Task), Error> {
+    let mut config = config(RewardConfig::perceptual("black.png").with_descriptor(kind), StateKind::Mirror);
+    let striped = || Frame::from_vec(84, 84, (0..84 * 84).map(|at| at as u8).collect());
+    let goal = if kind == DescriptorKind::Direct { black() } else { striped()? };
+    let state = Task::new(&config, Some(&goal.clone().into()))?;
+    config.reward.form = RewardForm::Potential;
+    config.reward.gamma = Some(0.9);
+    Ok((Task::new(&config, Some(&goal.into()))?, state))
+}
+
+#[test]
+fn rewards_by_potential_come_to_how_an_episode_begins_and_ends() -> Result<(), Error> {
+    for kind in [DescriptorKind::Direct, DescriptorKind::Motion] {
+        let (mut potential, mut state) = potential_and_state(kind)?;
+        for seed in [4, 5] {
+            potential.reset(seed);
+            state.reset(seed);
+            let mut last = None::<f32>;
+            let (mut sum, mut discount, mut first) = (0.0, 1.0, 0.0);
+            // An idle player loses the ball: the episode terminates, and F of its last frame counts.
+            let status = loop {
+                let (step, f) = (potential.step(0)?, state.step(0)?.reward);
+                match last {
+                    Some(last) => assert_eq!(step.reward, 0.9 * f - last),
+                    None => first = 0.9 * f - step.reward,
+                }
+                sum += discount * f64::from(step.reward);
+                discount *= f64::from(0.9f32);
+                last = Some(f);
+                if step.status.is_over() {
+                    break step.status;
+                }
+            };
+            assert_eq!(status, Status::Terminated);
+            if kind == DescriptorKind::Direct {
+                let mut world = prf_envs::registry::make(&EnvConfig::new("breakout"))?;
+                let mut frame = black();
+                world.reset(seed);
+                world.draw_into(&mut frame);
+                let mut descriptor = DirectDescriptor::new(&black(), RewardConfig::perceptual("").params())?;
+                assert!((first - descriptor.observe(frame.view())?.reward).abs() < 1e-6);
+            }
+            let (first, last) = (f64::from(first), f64::from(last.expect("at least one step")));
+            assert!(first > 0.0 && first < 1.0, "F of the first frame: {first}");
+            assert!((sum - (discount * last - first)).abs() < 1e-5, "{sum}, {discount} · {last} − {first}");
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn a_task_rewarded_by_potential_goes_on_where_it_was_saved() -> Result<(), Error> {
+    let (mut whole, mut state) = potential_and_state(DescriptorKind::Motion)?;
+    let (mut resumed, _) = potential_and_state(DescriptorKind::Motion)?;
+    whole.reset(4);
+    state.reset(4);
+    for _ in 0..8 {
+        whole.step(oracle(&whole))?;
+        state.step(oracle(&state))?;
+        resumed.load_state(&whole.save_state())?;
+        let mut ahead = potential_and_state(DescriptorKind::Motion)?.0;
+        ahead.load_state(&whole.save_state())?;
+        assert_eq!(ahead.step(0)?, resumed.step(0)?);
+    }
+    // A state of the other form does not fit, and changes nothing.
+    let before = whole.save_state();
+    assert!(matches!(whole.load_state(&state.save_state()), Err(Error::BadState { .. })));
+    assert_eq!(whole.save_state(), before);
     Ok(())
 }
 

@@ -78,7 +78,7 @@ pub(crate) fn run(args: &EvalArgs, printer: &mut Printer) -> Result<ExitStatus> 
 fn load(loaded: &LoadedRun, model: &Path, device: tch::Device) -> prf_dqn::Result<QNetwork> {
     let task = Task::new(&loaded.config.task(), loaded.goal.as_ref())?;
     let found = Model::read(model)?;
-    found.check(&architecture(&task)?, model)?;
+    found.check(&architecture(&task, loaded.config.train.dueling)?, model)?;
     found.network(Compute { device, precision: loaded.config.train.precision })
 }
 

@@ -3,6 +3,7 @@
 use std::io::ErrorKind;
 use std::path::Path;
 
+use prf_dqn::checkpoint::FORMAT;
 use prf_dqn::record::TimeShares;
 
 use crate::args::Device;
@@ -44,11 +45,38 @@ pub(super) fn explain(error: anyhow::Error, resume: Option<&str>) -> anyhow::Err
             });
             CliError::failed(error.to_string()).hint(hint).into()
         }
+        Some(prf_dqn::Error::Format { writer, .. }) => {
+            let hint = match writer {
+                Some(writer) if writer.format > FORMAT => {
+                    format!("use prf {} or a newer one, which can read it", writer.prf_version)
+                }
+                Some(writer) => {
+                    format!(
+                        "train anew with another --out, or use prf {} as it was then: nothing was changed",
+                        writer.prf_version
+                    )
+                }
+                None => "name a run folder, or a checkpoint, that `prf train` wrote".to_owned(),
+            };
+            CliError::failed(error.to_string()).hint(hint).into()
+        }
+        Some(prf_dqn::Error::Busy { .. }) => {
+            CliError::failed(error.to_string()).hint("wait until it has ended, or name another folder by --out").into()
+        }
         Some(prf_dqn::Error::Mismatch { .. }) => {
             CliError::failed(error.to_string()).hint("use it with the config.toml of its own run").into()
         }
-        Some(prf_dqn::Error::Diverged { .. }) => CliError::failed(error.to_string())
-            .hint("lower train.learning_rate; the checkpoints written before are whole")
+        Some(prf_dqn::Error::Diverged { saved, .. }) => {
+            let look = saved.as_ref().map_or(String::new(), |dir| {
+                format!("; {} has the network and the batch of that moment, to look at", dir.display())
+            });
+            let hint = format!(
+                "start anew with a lower train.learning_rate, or with a train.reward_scale that brings sums of rewards near 1{look}"
+            );
+            CliError::failed(error.to_string()).hint(hint).into()
+        }
+        Some(prf_dqn::Error::Reward { .. }) => CliError::failed(error.to_string())
+            .hint("the world or its reward is at fault; the checkpoints written before are whole")
             .into(),
         _ => error,
     }

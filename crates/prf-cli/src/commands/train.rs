@@ -30,8 +30,8 @@ pub(crate) fn run(args: &TrainArgs, printer: &mut Printer) -> Result<ExitStatus>
     }
     let (run, loaded) = open_run(args, loaded)?;
     let resume = resume_command(args, run.path());
-    let (ending, trainer) =
-        train(&run, loaded, device, threads, printer).map_err(|error| learning::explain(error, Some(&resume)))?;
+    let (ending, trainer) = train(&run, loaded, device, threads, args.resume, printer)
+        .map_err(|error| learning::explain(error, Some(&resume)))?;
     if ending == Ending::Interrupted {
         printer.note(format!("interrupted; the run is saved, go on with\n  {resume}"));
         return Ok(ExitStatus::Interrupted);
@@ -49,6 +49,7 @@ fn train(
     loaded: LoadedRun,
     device: tch::Device,
     threads: i32,
+    resumed: bool,
     printer: &mut Printer,
 ) -> Result<(Ending, Trainer)> {
     let seed = loaded.config.seed;
@@ -60,6 +61,8 @@ fn train(
     ));
     if trainer.steps() > 0 {
         printer.note(format!("going on from step {}", trainer.steps()));
+    } else if resumed {
+        printer.note("the run has no checkpoint yet: starting from its beginning");
     }
     let manifest = |trainer: &Trainer, finished| Manifest {
         prf_version: env!("CARGO_PKG_VERSION"),

@@ -95,7 +95,7 @@ impl Case {
     }
 
     fn bare(config: &RunConfig, precision: Precision, side: usize) -> Result<Self, Box<dyn Error>> {
-        let architecture = Architecture { input: [side as i64; 2], actions: 3 };
+        let architecture = Architecture { input: [side as i64; 2], actions: 3, dueling: false };
         let compute = Compute { device: tch::Device::Cpu, precision };
         let mut rng = stream(0, "bare", 0);
         let learner = Learner::new(architecture, config.train.learner(), compute, &mut rng)?;
@@ -111,6 +111,7 @@ impl Case {
             actions: (0..count as i64).map(|row| row % 3).collect(),
             rewards: vec![0.5; count],
             discounts: vec![config.train.gamma; count],
+            ..Batch::default()
         };
         let inputs = learner.inputs(&batch)?;
         Ok(Self::Bare { learner: Box::new(learner), inputs })

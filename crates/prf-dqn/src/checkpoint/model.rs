@@ -1,12 +1,11 @@
 //! `model.safetensors`: a network's parameters by name, enough to play with.
 
-use std::collections::HashMap;
 use std::fs;
 use std::path::Path;
 
 use safetensors::{Dtype, SafeTensors};
 
-use super::{bytes_f32, f32_bytes, view};
+use super::{Origin, bytes_of, floats_of, view};
 use crate::compute::Compute;
 use crate::error::{Error, Result};
 use crate::files::write_whole;
@@ -38,7 +37,7 @@ impl Model {
     }
 
     fn to_bytes(&self) -> Vec<u8> {
-        let bytes = f32_bytes(&self.values);
+        let bytes = bytes_of(&self.values);
         let mut rest = bytes.as_slice();
         let mut tensors = Vec::new();
         for (name, shape) in self.architecture.parameters() {
@@ -47,30 +46,21 @@ impl Model {
             tensors.push((name, view(Dtype::F32, shape, head)));
             rest = tail;
         }
-        let [height, width] = self.architecture.input;
-        let metadata = HashMap::from([("input".to_owned(), format!("{height}x{width}"))]);
+        let metadata = Origin::ours(&self.architecture).metadata();
         safetensors::serialize(tensors, Some(metadata)).expect("names are distinct and sizes consistent")
     }
 
     /// Reads a model file.
     ///
     /// # Errors
-    /// [`Error::Checkpoint`] when the file is damaged or holds no network of this crate; [`Error::Io`] when it cannot
-    /// be read.
+    /// [`Error::Checkpoint`] when the file is damaged; [`Error::Format`] when it is older or newer than what this version reads,
+    /// or nothing that PRF wrote; [`Error::Io`] when it cannot be read.
     pub fn read(path: &Path) -> Result<Self> {
         let bytes = fs::read(path).map_err(Error::unreadable(path))?;
         let damaged = |error: safetensors::SafeTensorError| Error::checkpoint(path, error, "a whole safetensors file");
         let (_, metadata) = SafeTensors::read_metadata(&bytes).map_err(damaged)?;
         let tensors = SafeTensors::deserialize(&bytes).map_err(damaged)?;
-        let input = metadata.metadata().as_ref().and_then(|map| map.get("input"));
-        let input = input.and_then(|text| text.split_once('x'));
-        let input = input.and_then(|(height, width)| Some([height.parse().ok()?, width.parse().ok()?]));
-        let input = input.filter(|sides: &[i64; 2]| {
-            sides.iter().all(|side| (Architecture::smallest_input()..=1 << 14).contains(side))
-        });
-        let input = input.ok_or_else(|| Error::checkpoint(path, "no input size", "a model written by prf"))?;
-        let output = tensors.tensor("output.bias").map_err(damaged)?;
-        let architecture = Architecture { input, actions: output.shape().iter().product::<usize>() as i64 };
+        let architecture = Origin::read(&metadata, path)?;
         let mut values = Vec::new();
         for (name, shape) in architecture.parameters() {
             let tensor = tensors.tensor(&name).map_err(damaged)?;
@@ -79,7 +69,7 @@ impl Model {
                 let got = format!("`{name}` of type {} and shape {found:?}", tensor.dtype());
                 return Err(Error::checkpoint(path, got, format!("F32 and shape {shape:?}")));
             }
-            values.extend(bytes_f32(tensor.data()));
+            values.extend(floats_of(tensor.data()));
         }
         Ok(Self { architecture, values })
     }
@@ -92,9 +82,7 @@ impl Model {
         if self.architecture == *expected {
             return Ok(());
         }
-        let describe =
-            |a: &Architecture| format!("a network for {}×{} px and {} actions", a.input[0], a.input[1], a.actions);
-        Err(Error::mismatch(path, describe(&self.architecture), describe(expected)))
+        Err(Error::mismatch(path, &self.architecture, expected))
     }
 }
 
@@ -102,26 +90,42 @@ impl Model {
 mod tests {
     use super::*;
 
-    fn model() -> Model {
-        let architecture = Architecture { input: [44, 52], actions: 4 };
+    fn model(dueling: bool) -> Model {
+        let architecture = Architecture { input: [44, 52], actions: 4, dueling };
         let mut rng = prf_envs::rng::stream(1, "network", 0);
         Model::of(&QNetwork::new(architecture, Compute::PLAIN, &mut rng).expect("network")).expect("model")
     }
 
     #[test]
     fn a_model_is_read_back_to_the_bit() {
-        let dir = tempfile::tempdir().expect("dir");
-        let path = dir.path().join("model.safetensors");
-        model().write(&path).expect("write");
-        assert_eq!(Model::read(&path).expect("read"), model());
-        assert_eq!(fs::read_dir(dir.path()).expect("dir").count(), 1, "a temporary file was left");
+        for dueling in [false, true] {
+            let dir = tempfile::tempdir().expect("dir");
+            let path = dir.path().join("model.safetensors");
+            model(dueling).write(&path).expect("write");
+            assert_eq!(Model::read(&path).expect("read"), model(dueling));
+            assert_eq!(fs::read_dir(dir.path()).expect("dir").count(), 1, "a temporary file was left");
+        }
+    }
+
+    #[test]
+    fn a_file_names_its_layers() {
+        let bytes = model(true).to_bytes();
+        let tensors = SafeTensors::deserialize(&bytes).expect("whole");
+        let mut names = tensors.names();
+        names.retain(|name| name.ends_with(".weight"));
+        let streams =
+            ["advantage.hidden", "advantage.output", "conv1", "conv2", "conv3", "value.hidden", "value.output"];
+        names.sort_unstable();
+        assert_eq!(names, streams.map(|layer| format!("{layer}.weight")));
+        assert_eq!(tensors.tensor("value.output.weight").expect("it is named").shape(), [1, 512]);
+        assert_eq!(tensors.tensor("advantage.output.weight").expect("it is named").shape(), [4, 512]);
     }
 
     #[test]
     fn a_file_cut_short_is_an_error_that_names_it() {
         let dir = tempfile::tempdir().expect("dir");
         let path = dir.path().join("model.safetensors");
-        let bytes = model().to_bytes();
+        let bytes = model(false).to_bytes();
         for length in [0, 4, 100, bytes.len() / 2, bytes.len() - 1] {
             fs::write(&path, &bytes[..length]).expect("write");
             let error = Model::read(&path).expect_err("cut short").to_string();
@@ -130,9 +134,10 @@ mod tests {
     }
 
     #[test]
-    fn a_model_for_another_task_is_an_error_with_both_shapes() {
-        let expected = Architecture { input: [84, 84], actions: 3 };
-        let error = model().check(&expected, Path::new("m")).expect_err("other").to_string();
-        assert!(error.contains("44×52 px and 4 actions") && error.contains("84×84 px and 3 actions"), "{error}");
+    fn a_model_for_another_task_is_an_error_with_both_networks() {
+        let expected = Architecture { input: [84, 84], actions: 3, dueling: false };
+        let error = model(true).check(&expected, Path::new("m")).expect_err("other").to_string();
+        let both = ["a dueling network for 44×52 px and 4 actions", "expected a network for 84×84 px and 3 actions"];
+        assert!(both.iter().all(|network| error.contains(network)), "{error}");
     }
 }

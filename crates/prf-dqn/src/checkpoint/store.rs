@@ -4,23 +4,11 @@ use std::fs::{self, File};
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
-use serde::{Deserialize, Serialize};
-
+use super::retention::{Retention, Segment, checkpoint_name, is_checkpoint_name};
 use super::{Checkpoint, MODEL_FILE, Model};
 use crate::error::{Error, Result};
-use crate::files::{PARTIAL, sync_dir};
+use crate::files::{PARTIAL, sync_dir, write_dir_whole};
 use crate::replay::Replay;
-
-/// Checkpoints that are kept, the newest ones.
-const KEPT: usize = 2;
-
-/// A file of the replay: the rows that were new at one checkpoint.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) struct Segment {
-    file: String,
-    /// Rows written by each environment up to the end of this segment.
-    end: Vec<u64>,
-}
 
 /// Writes and finds checkpoints in a run directory.
 #[derive(Debug)]
@@ -47,9 +35,12 @@ impl CheckpointStore {
     }
 
     /// The checkpoints under `run`, oldest first.
+    ///
+    /// # Errors
+    /// When the directory cannot be read.
     pub fn list(run: &Path) -> Result<Vec<PathBuf>> {
         let mut found = entries(&run.join("checkpoints"))?;
-        found.retain(|path| file_name(path).starts_with("step-") && path.join(MODEL_FILE).is_file());
+        found.retain(|path| is_checkpoint_name(&file_name(path)) && path.is_dir());
         found.sort();
         Ok(found)
     }
@@ -59,7 +50,7 @@ impl CheckpointStore {
         let from = known.last().map_or_else(|| vec![0; replay.lanes()], |segment| segment.end.clone());
         let mut segments: Vec<Segment> =
             known.iter().filter(|segment| replay.still_holds(&segment.end)).cloned().collect();
-        let file = format!("step-{step:012}.lz4");
+        let file = format!("{}.lz4", checkpoint_name(step));
         let (partial, path) = (self.replay.join(format!("{PARTIAL}{file}")), self.replay.join(&file));
         let write = || {
             let out = File::create(&partial)?;
@@ -91,24 +82,11 @@ impl CheckpointStore {
         Ok(())
     }
 
-    /// Writes a checkpoint, whole or not at all, then forgets what neither it nor the one before needs. `segments` are
-    /// those of the new checkpoint and of the one before.
-    pub(crate) fn write(&self, step: u64, checkpoint: &Checkpoint, segments: [&[Segment]; KEPT]) -> Result<()> {
-        let name = format!("step-{step:012}");
-        let (partial, path) = (self.checkpoints.join(format!("{PARTIAL}{name}")), self.checkpoints.join(&name));
-        let write = || {
-            fs::create_dir_all(&partial).map_err(Error::io("make", &partial))?;
-            checkpoint.write(&partial)?;
-            sync_dir(&partial)?;
-            if path.exists() {
-                // What a user left of a damaged checkpoint; whole ones are never written twice.
-                fs::remove_dir_all(&path).map_err(Error::io("replace", &path))?;
-            }
-            fs::rename(&partial, &path).map_err(Error::io("write", &path))?;
-            sync_dir(&self.checkpoints)
-        };
-        write().inspect_err(|_| drop(fs::remove_dir_all(&partial)))?;
-        self.forget_old(segments)
+    /// Writes a checkpoint, whole or not at all, then removes what does not stay.
+    pub(crate) fn write(&self, step: u64, checkpoint: &Checkpoint, retention: &Retention) -> Result<()> {
+        // There may be what a user left of a damaged checkpoint; whole ones are never written twice.
+        write_dir_whole(&self.checkpoints.join(checkpoint_name(step)), |dir| checkpoint.write(dir))?;
+        self.forget_all_but(retention)
     }
 
     /// Writes the model of the best evaluation so far.
@@ -118,15 +96,25 @@ impl CheckpointStore {
         model.write(&dir.join(MODEL_FILE))
     }
 
-    fn forget_old(&self, needed: [&[Segment]; KEPT]) -> Result<()> {
-        let run = self.checkpoints.parent().unwrap_or(Path::new("."));
-        let found = Self::list(run)?;
-        for path in &found[..found.len().saturating_sub(KEPT)] {
+    /// Writes what is to be looked at after learning has diverged, whole or not at all, in place of what was there before, and gives
+    /// its directory.
+    pub(crate) fn write_diverged(&self, fill: impl FnOnce(&Path) -> Result<()>) -> Result<PathBuf> {
+        let path = self.run().join("diverged");
+        write_dir_whole(&path, fill)?;
+        Ok(path)
+    }
+
+    fn run(&self) -> &Path {
+        self.checkpoints.parent().unwrap_or(Path::new("."))
+    }
+
+    fn forget_all_but(&self, retention: &Retention) -> Result<()> {
+        let found = Self::list(self.run())?;
+        for path in retention.superfluous(&found) {
             fs::remove_dir_all(path).map_err(Error::io("remove", path))?;
         }
         for path in entries(&self.replay)? {
-            let name = file_name(&path);
-            if !needed.iter().flat_map(|segments| segments.iter()).any(|segment| segment.file == name) {
+            if !retention.needs(&file_name(&path)) {
                 fs::remove_file(&path).map_err(Error::io("remove", &path))?;
             }
         }

@@ -5,6 +5,7 @@ use prf_envs::rng::ChaCha8Rng;
 use rand_core::Rng;
 use serde::{Deserialize, Serialize};
 
+use crate::error::{Error, Result};
 use crate::evaluate::Episode;
 
 pub(super) struct Lane {
@@ -25,6 +26,11 @@ impl Lane {
         self.episode = Episode::default();
         self.task.reset(self.seeds.next_u64());
     }
+}
+
+/// The reward of `environment` in `step`, if it is one that can be learned from.
+pub(super) fn finite(reward: f32, environment: usize, step: u64) -> Result<f32> {
+    if reward.is_finite() { Ok(reward) } else { Err(Error::Reward { environment, step, reward }) }
 }
 
 /// Sums over training episodes and updates since the last record.
@@ -69,5 +75,22 @@ impl Window {
 
     pub(super) fn mean_loss(&self) -> Option<f64> {
         (self.losses > 0).then(|| self.loss / self.losses as f64)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_reward_that_is_no_number_is_named_with_its_place() {
+        assert_eq!(finite(0.5, 3, 120).expect("a number"), 0.5);
+        for reward in [f32::NAN, f32::INFINITY] {
+            let error = finite(reward, 3, 120).expect_err("no number").to_string();
+            assert!(
+                error.starts_with("the reward of environment 3 in step 120 is ") && error.contains("expected"),
+                "{error}"
+            );
+        }
     }
 }

@@ -8,12 +8,16 @@ use serde::{Deserialize, Serialize};
 
 use super::Trainer;
 use super::lane::Window;
-use crate::checkpoint::{Checkpoint, CheckpointStore, Model, Segment};
+use crate::checkpoint::{Checkpoint, CheckpointStore, Model, Retention};
 use crate::error::{Error, Result};
 use crate::evaluate::Episode;
 use crate::optimizer::Adam;
 use crate::record::{Event, Recorder, TimeShares, timed};
 use crate::run_dir::RunDir;
+
+/// Names of vectors in a checkpoint.
+const PRIORITIES: &str = "replay.priorities";
+const LARGEST_PRIORITY: &str = "replay.largest_priority";
 
 /// Everything that is counted.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
@@ -42,7 +46,8 @@ struct State {
     adam_steps: u64,
     episodes: Vec<Episode>,
     metrics_bytes: u64,
-    segments: Vec<Segment>,
+    /// This checkpoint and those that stay beside it.
+    retention: Retention,
 }
 
 impl Counters {
@@ -67,7 +72,16 @@ impl Trainer {
     fn write_checkpoint(&mut self) -> Result<()> {
         let step = self.counters.steps;
         self.counters.checkpoints_due = step / self.config.train.checkpoint_every_steps;
-        let segments = self.checkpoints.write_replay(step, &self.replay, &self.segments)?;
+        let segments = self.checkpoints.write_replay(step, &self.replay, self.retention.newest())?;
+        let retention = self.retention.with(step, segments, self.config.train.keep_checkpoints);
+        self.checkpoints.write(step, &self.checkpoint(&retention)?, &retention)?;
+        self.retention = retention;
+        self.saved_at = Some(step);
+        Ok(())
+    }
+
+    /// The run as it is now, but for the frames of the replay, which are in the segments that `retention` names.
+    pub(super) fn checkpoint(&self, retention: &Retention) -> Result<Checkpoint> {
         let (first, second, adam_steps) = self.learner.optimizer.to_parts()?;
         let mut blobs = BTreeMap::new();
         blobs.insert("rng.exploration".to_owned(), rng::save(&self.exploration));
@@ -76,6 +90,15 @@ impl Trainer {
             blobs.insert(format!("task.{index}"), lane.task.save_state());
             blobs.insert(format!("rng.episodes.{index}"), rng::save(&lane.seeds));
         }
+        let mut vectors = BTreeMap::from([
+            ("target".to_owned(), self.learner.target.to_vec()?),
+            ("adam.first".to_owned(), first),
+            ("adam.second".to_owned(), second),
+        ]);
+        if let Some((priorities, largest)) = self.replay.priorities() {
+            vectors.insert(PRIORITIES.to_owned(), priorities);
+            vectors.insert(LARGEST_PRIORITY.to_owned(), vec![largest]);
+        }
         let state = State {
             config: self.config_text(),
             counters: Counters { elapsed_s: self.elapsed_s(), time: self.time, ..self.counters.clone() },
@@ -83,22 +106,14 @@ impl Trainer {
             adam_steps,
             episodes: self.lanes.iter().map(|lane| lane.episode).collect(),
             metrics_bytes: self.metrics.bytes()?,
-            segments: segments.clone(),
+            retention: retention.clone(),
         };
-        let checkpoint = Checkpoint {
+        Ok(Checkpoint {
             state: serde_json::to_string(&state).expect("a state holds only numbers and strings"),
             blobs,
-            vectors: BTreeMap::from([
-                ("target".to_owned(), self.learner.target.to_vec()?),
-                ("adam.first".to_owned(), first),
-                ("adam.second".to_owned(), second),
-            ]),
+            vectors,
             model: Model::of(&self.learner.online)?,
-        };
-        self.checkpoints.write(step, &checkpoint, [&segments, &self.segments])?;
-        self.segments = segments;
-        self.saved_at = Some(step);
-        Ok(())
+        })
     }
 
     /// Goes on from the newest checkpoint; without any, from the beginning.
@@ -117,12 +132,13 @@ impl Trainer {
         let damaged = |error| Error::checkpoint(&dir, error, "a whole checkpoint");
         self.exploration = rng::restore(&checkpoint.blob("rng.exploration", &dir)?).map_err(damaged)?;
         self.sampling = rng::restore(&checkpoint.blob("rng.replay", &dir)?).map_err(damaged)?;
-        self.checkpoints.read_replay(&state.segments, &mut self.replay)?;
+        self.checkpoints.read_replay(state.retention.newest(), &mut self.replay)?;
+        self.restore_priorities(&mut checkpoint, &dir)?;
         self.metrics.truncate(state.metrics_bytes)?;
         self.saved_at = Some(state.counters.steps);
         self.time = state.counters.time;
         self.counters = state.counters;
-        self.segments = state.segments;
+        self.retention = state.retention;
         Ok(())
     }
 
@@ -151,6 +167,15 @@ impl Trainer {
             lane.episode = state.episodes[index];
         }
         Ok(())
+    }
+
+    /// To be called when the replay holds its rows again.
+    fn restore_priorities(&mut self, checkpoint: &mut Checkpoint, dir: &Path) -> Result<()> {
+        let Some((priorities, _)) = self.replay.priorities() else { return Ok(()) };
+        let priorities = checkpoint.vector(PRIORITIES, priorities.len(), dir)?;
+        let largest = checkpoint.vector(LARGEST_PRIORITY, 1, dir)?[0];
+        let damaged = |got| Error::checkpoint(dir, got, "a priority for each transition of the replay");
+        self.replay.set_priorities(&priorities, largest).map_err(damaged)
     }
 
     /// The configuration as a checkpoint remembers it; where the goal's file lies does not matter.

@@ -82,6 +82,8 @@ pub struct Kobian {
     target: Face,
     closeness: &'static [f32],
     album: &'static Album,
+    /// The most actions that may be missing where an episode ends by success.
+    solved_within: Option<u32>,
     episode: Option<Episode>,
 }
 
@@ -122,7 +124,25 @@ impl Kobian {
         let spec =
             Spec { name: expression.name(), width: side, height: side, actions: &ACTIONS, limit_steps, chance: false };
         let (target, closeness) = (expression.target(), closeness(expression));
-        Ok(Kobian { spec, expression, target, closeness, album: Album::get(), episode: None })
+        Ok(Kobian { spec, expression, target, closeness, album: Album::get(), solved_within: None, episode: None })
+    }
+
+    /// This world, but an episode terminates once no more than `actions` are missing to the target.
+    ///
+    /// # Errors
+    /// As many are missing at the beginning.
+    pub fn solved_within(self, actions: u32) -> Result<Kobian, Error> {
+        let most = Face::default().actions_to(self.target) - 1;
+        if actions > most {
+            let expected = format!("0 to {most}, fewer than are missing at the beginning");
+            return Err(Error::param("env.solved_within", actions.to_string(), expected));
+        }
+        Ok(Kobian { solved_within: Some(actions), ..self })
+    }
+
+    /// Whether an episode with this face has come to its own end.
+    fn is_solved(&self, face: Face) -> bool {
+        self.solved_within.is_some_and(|most| face.actions_to(self.target) <= most)
     }
 
     /// The face now; none before the first episode.
@@ -147,18 +167,22 @@ impl Environment for Kobian {
         if action >= ACTIONS.len() {
             return Err(Error::UnknownAction { world, got: action, last: ACTIONS.len() - 1 });
         }
-        let episode = self.episode.as_mut().ok_or(Error::NotReset { world })?;
-        if episode.status.is_over() {
+        let Episode { mut face, steps, status } = self.episode.ok_or(Error::NotReset { world })?;
+        if status.is_over() {
             return Err(Error::EpisodeOver { world });
         }
         if action != REST {
-            episode.face.shift((action - 1) / 2, action % 2 == 1);
+            face.shift((action - 1) / 2, action % 2 == 1);
         }
-        episode.steps += 1;
-        if episode.steps >= self.spec.limit_steps {
-            episode.status = Status::Truncated;
-        }
-        let Episode { face, status, .. } = *episode;
+        let steps = steps + 1;
+        let status = if self.is_solved(face) {
+            Status::Terminated
+        } else if steps >= self.spec.limit_steps {
+            Status::Truncated
+        } else {
+            Status::Running
+        };
+        self.episode = Some(Episode { face, steps, status });
         let score = 0.0 - face.actions_to(self.target) as f32;
         Ok(Step { reward: self.closeness[face.position(0..MOVEMENTS)], score, status })
     }
@@ -176,7 +200,7 @@ impl Environment for Kobian {
     }
 
     fn load_state(&mut self, bytes: &[u8]) -> Result<(), Error> {
-        self.episode = state::load(self.expression, bytes, self.spec.limit_steps)?;
+        self.episode = state::load(self, bytes)?;
         Ok(())
     }
 

@@ -1,7 +1,7 @@
 //! An episode as bytes.
 
 use super::face::{Face, MOVEMENTS};
-use super::{Episode, Expression};
+use super::{Episode, Expression, Kobian};
 use crate::bytes::Reader;
 use crate::{Error, Status};
 
@@ -18,8 +18,9 @@ pub(super) fn save(expression: Expression, episode: Option<&Episode>) -> Vec<u8>
     bytes
 }
 
-/// The episode in `bytes`, if it is one that can be played under `limit_steps`.
-pub(super) fn load(expression: Expression, bytes: &[u8], limit_steps: u32) -> Result<Option<Episode>, Error> {
+/// The episode in `bytes`, if it is one that can be played in `world`.
+pub(super) fn load(world: &Kobian, bytes: &[u8]) -> Result<Option<Episode>, Error> {
+    let (expression, limit_steps) = (world.expression, world.spec.limit_steps);
     let mut reader = Reader::new(expression.name(), bytes);
     let tag = tag(expression);
     reader.tag(&tag)?;
@@ -36,12 +37,13 @@ pub(super) fn load(expression: Expression, bytes: &[u8], limit_steps: u32) -> Re
         return Err(reader.bad(format!("{steps} steps"), "as many as the face has moved"));
     }
     let fits = match status {
-        Status::Running => steps < limit_steps,
-        Status::Truncated => steps == limit_steps,
-        Status::Terminated => false,
+        Status::Terminated => steps <= limit_steps && world.is_solved(face),
+        Status::Running => steps < limit_steps && !world.is_solved(face),
+        Status::Truncated => steps == limit_steps && !world.is_solved(face),
     };
     if !fits {
-        return Err(reader.bad(format!("{steps} steps, {status:?}"), format!("a status that fits {limit_steps} steps")));
+        let got = format!("{steps} steps, {status:?}");
+        return Err(reader.bad(got, format!("a status that fits the face and {limit_steps} steps")));
     }
     Ok(Some(Episode { face, steps, status }))
 }

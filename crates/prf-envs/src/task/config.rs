@@ -43,12 +43,16 @@ pub struct EnvConfig {
     pub name: String,
     /// Steps after which an episode is truncated, at least 1. The world's own limit if the file says nothing.
     pub limit_steps: u32,
+    /// If given, an episode terminates, as a success, once no more than this many actions are missing to the finished task.
+    /// Only the worlds of the face have it; from 0 to what is missing at the beginning, less 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub solved_within: Option<u32>,
 }
 
 impl EnvConfig {
     /// The world called `name` with its own step limit.
     pub fn new(name: &str) -> EnvConfig {
-        EnvTable { name: name.to_owned(), limit_steps: None }.into()
+        EnvTable { name: name.to_owned(), limit_steps: None, solved_within: None }.into()
     }
 
     fn validate(&self) -> Result<(), ParamError> {
@@ -65,13 +69,14 @@ impl EnvConfig {
 struct EnvTable {
     name: String,
     limit_steps: Option<u32>,
+    solved_within: Option<u32>,
 }
 
 impl From<EnvTable> for EnvConfig {
-    fn from(EnvTable { name, limit_steps }: EnvTable) -> EnvConfig {
+    fn from(EnvTable { name, limit_steps, solved_within }: EnvTable) -> EnvConfig {
         // An unknown world has no limit either; its name is what `validate` complains about.
         let limit_steps = limit_steps.or_else(|| registry::default_limit_steps(&name)).unwrap_or(0);
-        EnvConfig { name, limit_steps }
+        EnvConfig { name, limit_steps, solved_within }
     }
 }
 
@@ -87,6 +92,12 @@ pub struct RewardConfig {
     /// The goal's file, relative to the config's; for perceptual rewards only.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub goal: Option<PathBuf>,
+    /// What of the source rewards a step; anything but [`RewardForm::State`] is for perceptual rewards only.
+    pub form: RewardForm,
+    /// Discount γ in [0, 1) of [`RewardForm::Potential`]. It is the learner's, so the table has no key for it, and whoever joins
+    /// the table with a learner fills it in.
+    #[serde(skip)]
+    pub gamma: Option<f32>,
     /// How the distance is scaled; only perceptual rewards look at it.
     pub scale: DistanceScale,
     /// `[reward.window]`; for the window descriptor only.
@@ -165,6 +176,15 @@ impl RewardConfig {
                 useless("reward.goal", self.goal.is_some(), PERCEPTUAL)?;
             }
         }
+        if self.form == RewardForm::Potential {
+            useless("reward.form", self.source == RewardSource::Variable, PERCEPTUAL)?;
+            let fits = self.gamma.is_some_and(|gamma| (0.0..1.0).contains(&gamma));
+            let got = self.gamma.map_or("no discount".to_owned(), |gamma| format!("the discount {gamma}"));
+            let expected = "a learner's discount from 0 up to, but not including, 1, for \"potential\"";
+            if !fits {
+                return Err(invalid("reward.form", got, expected));
+            }
+        }
         let is = |kind| self.descriptor == Some(kind);
         useless("reward.window", self.window.is_some() && !is(DescriptorKind::Window), WINDOW)?;
         useless("reward.motion", self.motion.is_some() && !is(DescriptorKind::Motion), MOTION)?;
@@ -184,6 +204,8 @@ struct RewardTable {
     source: RewardSource,
     descriptor: Option<DescriptorKind>,
     goal: Option<PathBuf>,
+    #[serde(default)]
+    form: RewardForm,
     #[serde(default)]
     scale: DistanceScale,
     window: Option<WindowConfig>,
@@ -205,12 +227,14 @@ struct HogTable {
 
 impl From<RewardTable> for RewardConfig {
     fn from(table: RewardTable) -> RewardConfig {
-        let RewardTable { source, descriptor, goal, scale, window, motion, hog } = table;
+        let RewardTable { source, descriptor, goal, form, scale, window, motion, hog } = table;
         let default = HogParams { cell: descriptor.unwrap_or_default().paper_cell(), ..HogParams::default() };
         RewardConfig {
             source,
             descriptor,
             goal,
+            form,
+            gamma: None,
             scale,
             window: window.or((descriptor == Some(DescriptorKind::Window)).then(WindowConfig::default)),
             motion: motion.or((descriptor == Some(DescriptorKind::Motion)).then(MotionParams::default)),
@@ -234,6 +258,18 @@ pub enum RewardSource {
     Perceptual,
     /// What the world itself gives (VRF).
     Variable,
+}
+
+/// What of a perceptual reward an agent gets for the step from `s` to `s′`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RewardForm {
+    /// `F(s′)`, as in the paper: every step near the goal is rewarded, so an agent may prefer never to finish.
+    #[default]
+    State,
+    /// `γF(s′) − F(s)`, also where `s′` is terminal: a whole episode of T steps then comes to `γᵀF(s_T) − F(s₀)`, so what counts
+    /// is how it ends. `docs/reward.md` says where that helps and where it harms.
+    Potential,
 }
 
 /// `[state]`: what the agent sees.

@@ -7,7 +7,9 @@ use std::cell::{Cell, OnceCell};
 
 use prf_core::{Error as CoreError, Frame, FrameMut, Goal, TaskDescriptor};
 
-pub use self::config::{EnvConfig, RewardConfig, RewardSource, StateConfig, StateKind, TaskConfig, WindowConfig};
+pub use self::config::{
+    EnvConfig, RewardConfig, RewardForm, RewardSource, StateConfig, StateKind, TaskConfig, WindowConfig,
+};
 use self::state::Representation;
 use crate::bytes::Reader;
 use crate::{Environment, Error, Spec, Status, registry};
@@ -18,7 +20,8 @@ const TAG: &[u8] = b"task2";
 /// What one step of a task brought.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TaskStep {
-    /// The reward of the chosen source: F in (0, 1] of the frame after the action, or the world's own.
+    /// The reward of the chosen source: F in (0, 1] of the frame after the action, by [`RewardForm::Potential`] what became of it
+    /// (in (−1, 1)), or the world's own.
     pub reward: f32,
     /// The world's score so far in this episode.
     pub score: f32,
@@ -83,7 +86,21 @@ impl Mirror {
 
 enum Reward {
     Variable,
-    Perceptual(Box<dyn TaskDescriptor>),
+    Perceptual { descriptor: Box<dyn TaskDescriptor>, potential: Option<Potential> },
+}
+
+/// What [`RewardForm::Potential`] remembers.
+struct Potential {
+    gamma: f32,
+    /// F of the frame before the next step; 0 before the first reset.
+    now: f32,
+}
+
+impl Potential {
+    /// The reward of a step to a frame whose F is `next`.
+    fn step(&mut self, next: f32) -> f32 {
+        self.gamma * next - std::mem::replace(&mut self.now, next)
+    }
 }
 
 impl Task {
@@ -115,14 +132,18 @@ impl Task {
     /// Begins the episode of `seed`; [`observation`](Task::observation) then holds the first state.
     pub fn reset(&mut self, seed: u64) {
         self.environment.reset(seed);
-        if let Reward::Perceptual(descriptor) = &mut self.reward {
+        if let Reward::Perceptual { descriptor, .. } = &mut self.reward {
             descriptor.reset();
         }
         self.state.reset();
         self.look();
-        if let Reward::Perceptual(descriptor) = &mut self.reward {
-            let mirror = self.mirror.of(self.environment.as_ref());
-            descriptor.pass(mirror.view()).expect("a new episode takes frames of any size");
+        if let Reward::Perceptual { descriptor, potential } = &mut self.reward {
+            let mirror = self.mirror.of(self.environment.as_ref()).view();
+            let taken = match potential {
+                None => descriptor.pass(mirror),
+                Some(potential) => descriptor.observe(mirror).map(|score| potential.now = score.reward),
+            };
+            taken.expect("a new episode takes frames of the size it was prepared for");
         }
     }
 
@@ -135,8 +156,9 @@ impl Task {
         self.look();
         let reward = match &mut self.reward {
             Reward::Variable => step.reward,
-            Reward::Perceptual(descriptor) => {
-                descriptor.observe(self.mirror.of(self.environment.as_ref()).view())?.reward
+            Reward::Perceptual { descriptor, potential } => {
+                let value = descriptor.observe(self.mirror.of(self.environment.as_ref()).view())?.reward;
+                potential.as_mut().map_or(value, |potential| potential.step(value))
             }
         };
         Ok(TaskStep { reward, score: step.score, status: step.status })
@@ -222,35 +244,57 @@ impl Reward {
             descriptor.prepare(shape)?;
             Ok::<_, CoreError>(descriptor)
         };
-        Ok(Reward::Perceptual(describe().map_err(|error| error.within("reward"))?))
+        let descriptor = describe().map_err(|error| error.within("reward"))?;
+        let potential = match config.form {
+            RewardForm::State => None,
+            RewardForm::Potential => config.gamma.map(|gamma| Potential { gamma, now: 0.0 }),
+        };
+        Ok(Reward::Perceptual { descriptor, potential })
     }
 
-    /// What the descriptor remembers of the episode.
+    /// What it remembers of the episode.
     fn save(&self) -> Vec<u8> {
         match self {
             Reward::Variable => Vec::new(),
-            Reward::Perceptual(descriptor) => descriptor.save_state(),
+            Reward::Perceptual { descriptor, potential } => {
+                let now = potential.iter().flat_map(|potential| potential.now.to_le_bytes());
+                now.chain(descriptor.save_state()).collect()
+            }
         }
     }
 
     /// Takes up what [`save`](Reward::save) gave, if `others` can be loaded as well.
     fn load(&mut self, bytes: &[u8], others: impl FnOnce() -> Result<(), Error>) -> Result<(), Error> {
         let before = self.save();
-        match self {
-            Reward::Variable if bytes.is_empty() => {}
-            Reward::Variable => {
-                return Err(bad_state(format!("{} bytes too many", bytes.len()), "none for this reward"));
-            }
-            Reward::Perceptual(descriptor) => descriptor.load_state(bytes).map_err(|error| match error {
-                CoreError::Restore { got, expected } => bad_state(got, expected),
-                other => other.into(),
-            })?,
+        self.restore(bytes)?;
+        others().inspect_err(|_| self.restore(&before).expect("it gave these bytes itself"))
+    }
+
+    fn restore(&mut self, bytes: &[u8]) -> Result<(), Error> {
+        let Reward::Perceptual { descriptor, potential } = self else {
+            let fits = bytes.is_empty();
+            return if fits {
+                Ok(())
+            } else {
+                Err(bad_state(format!("{} bytes too many", bytes.len()), "none for this reward"))
+            };
+        };
+        let mut reader = Reader::new("a task", bytes);
+        let now = match potential {
+            None => 0.0,
+            Some(_) => f32::from_le_bytes(reader.array()?),
+        };
+        if !(0.0..=1.0).contains(&now) {
+            return Err(reader.bad(format!("a reward of {now}"), "one from 0 to 1"));
         }
-        others().inspect_err(|_| {
-            if let Reward::Perceptual(descriptor) = self {
-                descriptor.load_state(&before).expect("it gave these bytes itself");
-            }
-        })
+        descriptor.load_state(reader.rest()).map_err(|error| match error {
+            CoreError::Restore { got, expected } => bad_state(got, expected),
+            other => other.into(),
+        })?;
+        if let Some(potential) = potential {
+            potential.now = now;
+        }
+        Ok(())
     }
 }
 
