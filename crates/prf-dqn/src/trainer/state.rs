@@ -8,11 +8,12 @@ use serde::{Deserialize, Serialize};
 
 use super::Trainer;
 use super::lane::Window;
+use super::recording::Recording;
 use crate::checkpoint::{Checkpoint, CheckpointStore, Model, Segment};
 use crate::error::{Error, Result};
 use crate::evaluate::Episode;
 use crate::optimizer::Adam;
-use crate::record::{Event, Recorder, TimeShares, timed};
+use crate::record::{Event, Marks, Recorder, TimeShares, timed};
 use crate::run_dir::RunDir;
 
 /// Everything that is counted.
@@ -41,7 +42,8 @@ struct State {
     updates: u64,
     adam_steps: u64,
     episodes: Vec<Episode>,
-    metrics_bytes: u64,
+    recording: Recording,
+    records: Marks,
     segments: Vec<Segment>,
 }
 
@@ -66,6 +68,7 @@ impl Trainer {
 
     fn write_checkpoint(&mut self) -> Result<()> {
         let step = self.counters.steps;
+        let due = self.is_finished() || step / self.config.train.checkpoint_every_steps > self.counters.checkpoints_due;
         self.counters.checkpoints_due = step / self.config.train.checkpoint_every_steps;
         let segments = self.checkpoints.write_replay(step, &self.replay, &self.segments)?;
         let (first, second, adam_steps) = self.learner.optimizer.to_parts()?;
@@ -82,7 +85,8 @@ impl Trainer {
             updates: self.learner.updates,
             adam_steps,
             episodes: self.lanes.iter().map(|lane| lane.episode).collect(),
-            metrics_bytes: self.metrics.bytes()?,
+            recording: self.recording.clone(),
+            records: timed(&mut self.time.records_s, || self.records.mark(due))?,
             segments: segments.clone(),
         };
         let checkpoint = Checkpoint {
@@ -104,7 +108,8 @@ impl Trainer {
     /// Goes on from the newest checkpoint; without any, from the beginning.
     pub(super) fn resume(&mut self, run: &RunDir) -> Result<()> {
         let Some(dir) = CheckpointStore::list(run.path())?.pop() else {
-            return self.metrics.truncate(0);
+            self.losses = self.records.rewind(&Marks::new())?;
+            return Ok(());
         };
         let mut checkpoint = Checkpoint::read(&dir, self.learner.online.architecture())?;
         let state: State = serde_json::from_str(&checkpoint.state)
@@ -118,7 +123,8 @@ impl Trainer {
         self.exploration = rng::restore(&checkpoint.blob("rng.exploration", &dir)?).map_err(damaged)?;
         self.sampling = rng::restore(&checkpoint.blob("rng.replay", &dir)?).map_err(damaged)?;
         self.checkpoints.read_replay(&state.segments, &mut self.replay)?;
-        self.metrics.truncate(state.metrics_bytes)?;
+        self.losses = self.records.rewind(&state.records)?;
+        self.recording = state.recording;
         self.saved_at = Some(state.counters.steps);
         self.time = state.counters.time;
         self.counters = state.counters;
