@@ -260,3 +260,6 @@ impl KeptRecorder for McapRecorder {
         file.sync_all().map_err(Error::io("write", &self.path))
     }
 }
+
+#[cfg(test)]
+mod tests;
