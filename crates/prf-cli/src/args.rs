@@ -1,5 +1,6 @@
 //! What can be typed after `prf`: clap's types and nothing else.
 
+use std::net::{SocketAddr, ToSocketAddrs};
 use std::path::PathBuf;
 
 use clap::builder::{PathBufValueParser, TypedValueParser};
@@ -99,6 +100,15 @@ pub(crate) struct TrainArgs {
     /// Go on with the run in the folder
     #[arg(long)]
     pub(crate) resume: bool,
+    /// Serve what is recorded to Foxglove while the run goes on
+    #[arg(
+        long,
+        value_name = "HOST:PORT",
+        num_args = 0..=1,
+        default_missing_value = "127.0.0.1:8765",
+        value_parser = parse_address
+    )]
+    pub(crate) live: Option<SocketAddr>,
     /// Print the complete config, the memory and the time it needs, and start nothing
     #[arg(long)]
     pub(crate) dry_run: bool,
@@ -393,6 +403,11 @@ fn parse_rect(text: &str) -> Result<Rect, String> {
         return Err("expected a width and a height of at least 1".to_owned());
     }
     Ok(Rect { x, y, width, height })
+}
+
+fn parse_address(text: &str) -> Result<SocketAddr, String> {
+    let address = text.to_socket_addrs().ok().and_then(|mut found| found.next());
+    address.ok_or_else(|| "expected a host of this machine and a port, as in 127.0.0.1:8765".to_owned())
 }
 
 #[derive(Debug, Args)]

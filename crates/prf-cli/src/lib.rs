@@ -15,6 +15,8 @@ mod evidence;
 mod files;
 mod gif;
 mod interrupt;
+#[cfg(feature = "train")]
+mod live;
 mod play;
 mod plot;
 mod printer;

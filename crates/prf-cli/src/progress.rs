@@ -75,11 +75,11 @@ fn position(progress: &Progress) -> u64 {
 }
 
 impl Recorder for ProgressReporter {
-    fn record(&mut self, event: &Event) -> prf_dqn::Result<()> {
+    fn record(&mut self, event: &Event<'_>) -> prf_dqn::Result<()> {
         match event {
             Event::Progress(progress) => self.progress(progress),
             Event::Evaluation(record) => self.evaluation(record),
-            Event::Train(_) | Event::Checkpoint(_) => {}
+            Event::Train(_) | Event::Step(_) | Event::Checkpoint(_) => {}
         }
         Ok(())
     }

@@ -28,6 +28,9 @@ pub struct RunConfig {
     /// `[evaluation]`: the greedy evaluations during the run.
     #[serde(default)]
     pub evaluation: EvaluationConfig,
+    /// `[record]`: what the run writes besides `metrics.jsonl`.
+    #[serde(default)]
+    pub record: RecordConfig,
 }
 
 /// `[train]`: the deep Q-network and its schedule. A *step* is one action in one environment.
@@ -135,6 +138,20 @@ pub struct EvaluationConfig {
     pub episodes: usize,
 }
 
+/// `[record]`: what the run writes besides `metrics.jsonl`, and which episodes it writes step by step.
+#[derive(Debug, Clone, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct RecordConfig {
+    /// Write `run.mcap`.
+    pub mcap: bool,
+    /// Write the event file in `tensorboard/`.
+    pub tensorboard: bool,
+    /// Episodes of each evaluation that are recorded step by step, the first ones; at most `evaluation.episodes`.
+    pub evaluation_episodes: usize,
+    /// A training episode is recorded step by step whenever this many have begun; 0 records none.
+    pub training_every_episodes: u64,
+}
+
 impl Default for EpsilonConfig {
     fn default() -> Self {
         Self { start: 1.0, end: 0.05, decay_steps: 60_000 }
@@ -150,6 +167,12 @@ impl Default for PrioritizedConfig {
 impl Default for EvaluationConfig {
     fn default() -> Self {
         Self { every_episodes: 100, episodes: 20 }
+    }
+}
+
+impl Default for RecordConfig {
+    fn default() -> Self {
+        Self { mcap: true, tensorboard: true, evaluation_episodes: 1, training_every_episodes: 100 }
     }
 }
 
@@ -218,7 +241,8 @@ impl RunConfig {
     pub fn validate(&self) -> Result<(), ParamError> {
         self.task().validate()?;
         self.train.validate()?;
-        self.evaluation.validate()
+        self.evaluation.validate()?;
+        within("record.evaluation_episodes", self.record.evaluation_episodes as u64, 0, self.evaluation.episodes as u64)
     }
 }
 

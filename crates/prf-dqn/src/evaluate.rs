@@ -50,11 +50,13 @@ impl Spread {
 
 /// Plays one episode for each seed, all at once, taking the action of the highest value.
 ///
-/// `q_values` gives the values of a batch of states; `tasks` are at least as many as `seeds`.
+/// `q_values` gives the values of a batch of states; `tasks` are at least as many as `seeds`; `taken` is told each episode's index
+/// and the action taken in it, one after another.
 pub fn play_greedily(
     tasks: &mut [Task],
     seeds: &[u64],
     q_values: impl Fn(&[u8], usize) -> Result<Vec<f32>>,
+    taken: &mut dyn FnMut(usize, usize),
 ) -> Result<Vec<Episode>> {
     let mut episodes = vec![Episode::default(); seeds.len()];
     for (task, &seed) in tasks.iter_mut().zip(seeds) {
@@ -70,6 +72,7 @@ pub fn play_greedily(
         let mut still = Vec::with_capacity(running.len());
         for (&index, action) in running.iter().zip(actions) {
             let step = tasks[index].step(action)?;
+            taken(index, action);
             let episode = &mut episodes[index];
             episode.add(&step);
             if step.status == Status::Running {

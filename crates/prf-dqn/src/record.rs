@@ -7,17 +7,30 @@ use serde::{Deserialize, Serialize};
 use crate::error::Result;
 
 mod jsonl;
+mod kept;
+mod mcap;
+mod messages;
+mod step;
+mod tensorboard;
 
 pub use jsonl::JsonlRecorder;
+pub use kept::{KeptRecorder, Loss, Marks, Records};
+pub use mcap::{McapRecorder, Preamble};
+pub use messages::{Clock, Message, STEP_NS, Topic, goal_message, messages};
+pub use step::{EpisodeKind, StepRecord};
+pub use tensorboard::TensorBoardRecorder;
 
 /// Something worth telling.
 #[derive(Debug, Clone, Serialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
-pub enum Event {
+pub enum Event<'a> {
     /// How the training episodes since the last such event went.
     Train(TrainRecord),
     /// A greedy evaluation.
     Evaluation(EvaluationRecord),
+    /// A step of an episode that is recorded step by step.
+    #[serde(skip)]
+    Step(StepRecord<'a>),
     /// Where the run stands; many a second, for people who watch.
     #[serde(skip)]
     Progress(Progress),
@@ -97,7 +110,7 @@ pub trait Recorder {
     ///
     /// # Errors
     /// When it could not be written.
-    fn record(&mut self, event: &Event) -> Result<()>;
+    fn record(&mut self, event: &Event<'_>) -> Result<()>;
 }
 
 /// Where the time of a run went.
@@ -115,12 +128,20 @@ pub struct TimeShares {
     pub evaluation_s: f64,
     /// Writing checkpoints.
     pub checkpoints_s: f64,
+    /// Recording.
+    pub records_s: f64,
 }
 
 impl TimeShares {
     /// The sum of all.
     pub fn total_s(&self) -> f64 {
-        self.acting_s + self.worlds_s + self.replay_s + self.updates_s + self.evaluation_s + self.checkpoints_s
+        self.acting_s
+            + self.worlds_s
+            + self.replay_s
+            + self.updates_s
+            + self.evaluation_s
+            + self.checkpoints_s
+            + self.records_s
     }
 }
 

@@ -1,5 +1,6 @@
 //! The directory of a run and what lies where in it.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -17,11 +18,12 @@ const MASK: &str = "mask.png";
 /// The records, whose lock is that of the run.
 const METRICS: &str = "metrics.jsonl";
 
-/// A run's directory: `config.toml`, `goal.png`, `mask.png`, `manifest.json`, `metrics.jsonl`, `checkpoints/`, `replay/`; after
-/// a divergence `diverged/`.
+/// A run's directory: `config.toml`, `goal.png`, `mask.png`, `manifest.json`, `metrics.jsonl`, `run.mcap`, `tensorboard/`,
+/// `checkpoints/`, `replay/`; after a divergence `diverged/`.
 #[derive(Debug, Clone)]
 pub struct RunDir {
     path: PathBuf,
+    revision: Option<&'static str>,
 }
 
 /// Where a run came from and where its time went: `manifest.json`.
@@ -55,7 +57,7 @@ impl RunDir {
     /// [`Error::Io`] when the directory is there and not empty, or cannot be written; [`Error::Busy`] when another process
     /// begins it at this moment.
     pub fn create(path: &Path, config: &RunConfig, goal: Option<&Goal>) -> Result<Self> {
-        let run = Self { path: path.to_owned() };
+        let run = Self::at(path);
         run.expect_nothing()?;
         fs::create_dir_all(path).map_err(Error::io("make", path))?;
         // Of two processes that came so far, the one with this lock goes on. Once it is given back there is a run.
@@ -96,7 +98,13 @@ impl RunDir {
 
     /// The run directory at `path`, made earlier.
     pub fn at(path: &Path) -> Self {
-        Self { path: path.to_owned() }
+        Self { path: path.to_owned(), revision: None }
+    }
+
+    /// The same, with the revision of the sources that prf was built from, which the run's records name.
+    #[must_use]
+    pub fn built_from(self, revision: Option<&'static str>) -> Self {
+        Self { revision, ..self }
     }
 
     /// The directory itself.
@@ -112,6 +120,28 @@ impl RunDir {
     /// The records of the run, one JSON object a line.
     pub fn metrics_path(&self) -> PathBuf {
         self.path.join(METRICS)
+    }
+
+    /// The recorded episodes, for Foxglove.
+    pub fn mcap_path(&self) -> PathBuf {
+        self.path.join("run.mcap")
+    }
+
+    /// The folder of the event file, for TensorBoard.
+    pub fn tensorboard_path(&self) -> PathBuf {
+        self.path.join("tensorboard")
+    }
+
+    /// Where a run of `seed` on `device` comes from, as its records name it.
+    pub(crate) fn provenance(&self, seed: u64, device: tch::Device) -> BTreeMap<String, String> {
+        let known = [
+            ("seed", seed.to_string()),
+            ("device", format!("{device:?}").to_lowercase()),
+            ("prf_version", env!("CARGO_PKG_VERSION").to_owned()),
+            ("libtorch_version", crate::LIBTORCH_VERSION.to_owned()),
+        ];
+        let revision = self.revision.map(|revision| ("git_revision", revision.to_owned()));
+        known.into_iter().chain(revision).map(|(key, value)| (key.to_owned(), value)).collect()
     }
 
     /// Writes `manifest.json`.

@@ -13,17 +13,21 @@ use crate::error::{Error, Result};
 use crate::evaluate::{Spread, episode_seeds, play_greedily};
 use crate::learner::{Learner, greedy_actions};
 use crate::network::Architecture;
-use crate::record::{EvaluationRecord, Event, JsonlRecorder, Progress, Recorder, TimeShares, TrainRecord, timed};
+use crate::record::{
+    EpisodeKind, EvaluationRecord, Event, Loss, Preamble, Progress, Recorder, Records, TimeShares, TrainRecord, timed,
+};
 use crate::replay::{Batch, Outcome, Replay};
 use crate::run_dir::RunDir;
 use crate::schedule;
 
 mod divergence;
 mod lane;
+mod recording;
 mod state;
 
 pub use divergence::{Divergence, Figures};
 use lane::{Lane, Window, finite};
+use recording::{Place, Recording, step_record, tell};
 use state::Counters;
 
 /// How [`Trainer::run`] ended.
@@ -46,7 +50,10 @@ pub struct Trainer {
     exploration: ChaCha8Rng,
     sampling: ChaCha8Rng,
     counters: Counters,
-    metrics: JsonlRecorder,
+    records: Records,
+    recording: Recording,
+    /// What of the records was damaged when the run was resumed.
+    losses: Vec<Loss>,
     checkpoints: CheckpointStore,
     /// The checkpoints on disk.
     retention: Retention,
@@ -116,9 +123,14 @@ impl Trainer {
     }
 
     fn new(config: RunConfig, goal: Option<&Goal>, run: &RunDir, device: tch::Device) -> Result<Self> {
-        // First of all: whoever holds the records is alone in the run directory.
-        let metrics = JsonlRecorder::open(&run.metrics_path())?;
         let seed = config.seed;
+        let preamble = Preamble {
+            goal: goal.cloned(),
+            config: toml::to_string(&config).expect("a configuration is plain tables"),
+            provenance: run.provenance(seed, device),
+        };
+        // First of all: whoever holds the records is alone in the run directory.
+        let records = Records::open(run, &config, preamble)?;
         let task = config.task();
         let make = || Ok::<_, Error>(Task::new(&task, goal)?);
         let lanes = (0..config.train.environments)
@@ -127,6 +139,8 @@ impl Trainer {
         let evaluation_tasks = (0..config.evaluation.episodes).map(|_| make()).collect::<Result<Vec<_>>>()?;
         let architecture = architecture(&evaluation_tasks[0], config.train.dueling)?;
         let compute = Compute { device, precision: config.train.precision };
+        let mut recording = Recording::default();
+        (0..lanes.len()).for_each(|lane| recording.begin(lane, config.record.training_every_episodes));
         let frame_len = (architecture.input[0] * architecture.input[1]) as usize;
         Ok(Self {
             evaluation_seeds: episode_seeds(0, "evaluation", config.evaluation.episodes),
@@ -135,7 +149,9 @@ impl Trainer {
             exploration: stream(seed, "exploration", 0),
             sampling: stream(seed, "replay", 0),
             counters: Counters::default(),
-            metrics,
+            records,
+            recording,
+            losses: Vec::new(),
             checkpoints: CheckpointStore::open(run.path())?,
             retention: Retention::default(),
             saved_at: None,
@@ -159,9 +175,10 @@ impl Trainer {
         while !self.is_finished() {
             if stop() {
                 self.save(recorder)?;
+                self.records.finish()?;
                 return Ok(Ending::Interrupted);
             }
-            self.step_worlds()?;
+            self.step_worlds(recorder)?;
             self.learn()?;
             recorder.record(&Event::Progress(self.progress()))?;
             if self.counters.episodes / self.config.evaluation.every_episodes > self.counters.evaluations_due {
@@ -177,6 +194,7 @@ impl Trainer {
             self.evaluate(recorder)?;
         }
         self.save(recorder)?;
+        self.records.finish()?;
         Ok(Ending::Finished)
     }
 
@@ -193,7 +211,8 @@ impl Trainer {
     }
 
     /// One ε-greedy step of every environment.
-    fn step_worlds(&mut self) -> Result<()> {
+    fn step_worlds(&mut self, recorder: &mut dyn Recorder) -> Result<()> {
+        let epsilon = self.epsilon();
         let actions = self.choose_actions()?;
         // The states acted in: the step overwrites the tasks' own.
         let states = self.states.chunks_exact(self.states.len() / self.lanes.len());
@@ -213,8 +232,14 @@ impl Trainer {
             });
             self.counters.steps += 1;
             lane.episode.add(&step);
+            if let Some(episode) = self.recording.episode(index) {
+                let place = Place { kind: EpisodeKind::Training, trained_steps: self.counters.steps, episode, epsilon };
+                let record = step_record(&lane.task, action, &step, &lane.episode, place);
+                timed(&mut self.time.records_s, || tell(&mut self.records, recorder, &Event::Step(record)))?;
+            }
             if step.status.is_over() {
                 self.counters.finish(lane.episode);
+                self.recording.begin(index, self.config.record.training_every_episodes);
                 timed(&mut self.time.worlds_s, || lane.begin_episode());
             }
         }
@@ -266,11 +291,13 @@ impl Trainer {
         self.counters.window = Window::default();
 
         let network = &self.learner.online;
+        let mut taken = vec![Vec::new(); self.config.record.evaluation_episodes];
+        let mut take = |episode: usize, action| taken.get_mut(episode).into_iter().for_each(|taken| taken.push(action));
         let episodes = timed(&mut self.time.evaluation_s, || {
-            play_greedily(&mut self.evaluation_tasks, &self.evaluation_seeds, |states, count| {
-                network.q_values(states, count)
-            })
+            let q_values = |states: &[u8], count| network.q_values(states, count);
+            play_greedily(&mut self.evaluation_tasks, &self.evaluation_seeds, q_values, &mut take)
         })?;
+        self.record_evaluation(recorder, &taken)?;
         let score = Spread::of(episodes.iter().map(|episode| f64::from(episode.score)));
         self.tell(
             recorder,
@@ -294,11 +321,6 @@ impl Trainer {
         self.counters.evaluations_due = self.counters.episodes / self.config.evaluation.every_episodes;
         self.window_started = Instant::now();
         Ok(())
-    }
-
-    fn tell(&mut self, recorder: &mut dyn Recorder, event: &Event) -> Result<()> {
-        self.metrics.record(event)?;
-        recorder.record(event)
     }
 
     fn elapsed_s(&self) -> f64 {
@@ -343,6 +365,11 @@ impl Trainer {
     /// Memory that the replay takes once it is full, in bytes.
     pub fn replay_bytes(&self) -> u64 {
         self.config.train.replay_bytes(self.lanes[0].task.observation().len())
+    }
+
+    /// What of the records was damaged when the run was resumed, and is lost.
+    pub fn losses(&self) -> &[Loss] {
+        &self.losses
     }
 
     /// Mean score of the last greedy evaluation.

@@ -44,7 +44,7 @@ episodes = 3
 struct Silent;
 
 impl Recorder for Silent {
-    fn record(&mut self, _event: &Event) -> prf_dqn::Result<()> {
+    fn record(&mut self, _event: &Event<'_>) -> prf_dqn::Result<()> {
         Ok(())
     }
 }

@@ -112,7 +112,12 @@ fn measure(network: &QNetwork, loaded: &LoadedRun, seeds: &[u64]) -> prf_dqn::Re
     let mut tasks = (0..seeds.len().min(TOGETHER)).map(|_| make()).collect::<prf_dqn::Result<Vec<_>>>()?;
     let mut episodes = Vec::with_capacity(seeds.len());
     for seeds in seeds.chunks(TOGETHER) {
-        episodes.extend(play_greedily(&mut tasks, seeds, |states, count| network.q_values(states, count))?);
+        episodes.extend(play_greedily(
+            &mut tasks,
+            seeds,
+            |states, count| network.q_values(states, count),
+            &mut |_, _| {},
+        )?);
     }
     Ok(episodes)
 }

@@ -91,7 +91,7 @@ pub(super) fn time_line(time: &TimeShares) -> String {
     let share = |seconds: f64| 100.0 * seconds / time.total_s().max(f64::EPSILON);
     format!(
         "{} in all: updates {:.0}%, acting {:.0}%, worlds and rewards {:.0}%, replay {:.0}%, evaluation {:.0}%, \
-         checkpoints {:.0}%",
+         checkpoints {:.0}%, records {:.1}%",
         duration(time.total_s()),
         share(time.updates_s),
         share(time.acting_s),
@@ -99,6 +99,7 @@ pub(super) fn time_line(time: &TimeShares) -> String {
         share(time.replay_s),
         share(time.evaluation_s),
         share(time.checkpoints_s),
+        share(time.records_s),
     )
 }
 

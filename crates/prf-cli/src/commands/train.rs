@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 use prf_dqn::estimate::Estimate;
+use prf_dqn::record::{Event, Recorder};
 use prf_dqn::run_dir::{Manifest, RunDir};
 use prf_dqn::trainer::{Ending, Trainer, set_threads};
 
@@ -12,9 +13,13 @@ use crate::ExitStatus;
 use crate::args::{Device, TrainArgs};
 use crate::error::{CliError, Result};
 use crate::interrupt::Interrupt;
+use crate::live::LiveServer;
 use crate::printer::Printer;
 use crate::progress::ProgressReporter;
 use crate::settings::{LoadedRun, load_run};
+
+/// Revision of the sources, when prf was built in a git checkout.
+const GIT_REVISION: Option<&str> = option_env!("PRF_GIT_REVISION");
 
 pub(crate) fn run(args: &TrainArgs, printer: &mut Printer) -> Result<ExitStatus> {
     let mut loaded = load_run(&args.config, &args.set, args.seed)?;
@@ -28,9 +33,11 @@ pub(crate) fn run(args: &TrainArgs, printer: &mut Printer) -> Result<ExitStatus>
     if args.dry_run {
         return dry_run(&loaded, device, printer);
     }
+    let live = serve(args, &loaded, printer)?;
     let (run, loaded) = open_run(args, loaded)?;
+    let run = run.built_from(GIT_REVISION);
     let resume = resume_command(args, run.path());
-    let (ending, trainer) = train(&run, loaded, device, threads, args.resume, printer)
+    let (ending, trainer) = train(&run, loaded, device, threads, args.resume, live, printer)
         .map_err(|error| learning::explain(error, Some(&resume)))?;
     if ending == Ending::Interrupted {
         printer.note(format!("interrupted; the run is saved, go on with\n  {resume}"));
@@ -50,6 +57,7 @@ fn train(
     device: tch::Device,
     threads: i32,
     resumed: bool,
+    live: Option<LiveServer>,
     printer: &mut Printer,
 ) -> Result<(Ending, Trainer)> {
     let seed = loaded.config.seed;
@@ -64,9 +72,12 @@ fn train(
     } else if resumed {
         printer.note("the run has no checkpoint yet: starting from its beginning");
     }
+    for loss in trainer.losses() {
+        printer.warning(loss, Some("what the run has learned is whole"));
+    }
     let manifest = |trainer: &Trainer, finished| Manifest {
         prf_version: env!("CARGO_PKG_VERSION"),
-        git_revision: option_env!("PRF_GIT_REVISION"),
+        git_revision: GIT_REVISION,
         libtorch_version: prf_dqn::LIBTORCH_VERSION,
         seed,
         device: format!("{device:?}").to_lowercase(),
@@ -76,13 +87,43 @@ fn train(
         time: trainer.time(),
     };
     run.write_manifest(&manifest(&trainer, false))?;
-    let mut reporter = ProgressReporter::new();
+    let mut watchers = Watchers { progress: ProgressReporter::new(), live };
     let interrupt = Interrupt::listen()?;
-    let ending = trainer.run(&mut reporter, &|| interrupt.came());
-    reporter.finish();
+    let ending = trainer.run(&mut watchers, &|| interrupt.came());
+    watchers.finish();
     let ending = ending?;
     run.write_manifest(&manifest(&trainer, ending == Ending::Finished))?;
     Ok((ending, trainer))
+}
+
+/// Who is told of a run while it goes on.
+struct Watchers {
+    progress: ProgressReporter,
+    live: Option<LiveServer>,
+}
+
+impl Watchers {
+    fn finish(self) {
+        self.progress.finish();
+        if let Some(live) = self.live {
+            live.stop();
+        }
+    }
+}
+
+impl Recorder for Watchers {
+    fn record(&mut self, event: &Event<'_>) -> prf_dqn::Result<()> {
+        self.progress.record(event)?;
+        self.live.as_mut().map_or(Ok(()), |live| live.record(event))
+    }
+}
+
+/// Starts to serve, if that is wished for, before anything else is begun.
+fn serve(args: &TrainArgs, loaded: &LoadedRun, printer: &mut Printer) -> Result<Option<LiveServer>> {
+    let Some(address) = args.live else { return Ok(None) };
+    let live = LiveServer::start(address, loaded.goal.as_ref())?;
+    printer.note(format!("live in Foxglove: open the connection {}", live.url(address)));
+    Ok(Some(live))
 }
 
 /// Prints what a run would be: its whole config as TOML, with the costs as comments.
@@ -134,6 +175,9 @@ fn resume_command(args: &TrainArgs, run: &Path) -> String {
     }
     if let Some(device) = args.device.to_possible_value().filter(|_| args.device != Device::Cpu) {
         command.push_str(&format!(" --device {}", device.get_name()));
+    }
+    if let Some(address) = args.live {
+        command.push_str(&format!(" --live {address}"));
     }
     for set in &args.set {
         command.push_str(&format!(" --set {}", quoted(set)));

@@ -64,6 +64,7 @@ impl Comparison {
             agent,
             matched,
             agent_box: Rect { x: self.agent_box.x + x, y: self.agent_box.y + y, ..self.agent_box },
+            mask: None,
             params: self.params,
             layout: self.layout,
             agent_features: &self.agent_features,

@@ -1,6 +1,6 @@
 //! Where a score came from.
 
-use crate::{FrameView, HogLayout, Match, Rect, RewardParams, Score};
+use crate::{Frame, FrameView, HogLayout, Match, Rect, RewardParams, Score};
 
 /// Everything that went into a score, borrowed from the descriptor that gave it.
 #[derive(Clone, Copy, Debug)]
@@ -17,6 +17,8 @@ pub struct Explanation<'a> {
     pub matched: Option<Match>,
     /// The part of `agent` that was compared, in its pixels: what is not black, within the window if there is one.
     pub agent_box: Rect,
+    /// Of a window goal that is no rectangle: what counts of the window, which is where this picture of its size isn't black.
+    pub mask: Option<FrameView<'a>>,
     /// How templates are compared.
     pub params: RewardParams,
     /// Cells and blocks, at the common size of the two boxes.
@@ -28,6 +30,23 @@ pub struct Explanation<'a> {
 }
 
 impl Explanation<'_> {
+    /// The agent's template `T_A` as it was compared: [`agent_box`](Explanation::agent_box) of
+    /// [`agent`](Explanation::agent), black where a mask says that it doesn't count.
+    #[must_use]
+    pub fn agent_template(&self) -> Frame {
+        let Rect { x, y, width, height } = self.agent_box;
+        let mut template = Frame::new(width, height);
+        for row in 0..height {
+            let pixels = template.row_mut(row);
+            pixels.copy_from_slice(&self.agent.row(y + row)[x..x + width]);
+            if let (Some(mask), Some(Match { rect: window, .. })) = (self.mask, self.matched) {
+                let counts = &mask.row(y + row - window.y)[x - window.x..];
+                pixels.iter_mut().zip(counts).filter(|(_, counts)| **counts == 0).for_each(|(pixel, _)| *pixel = 0);
+            }
+        }
+        template
+    }
+
     /// How much each cell adds to the squared distance of the features, at least 0: `[rows, columns]` as
     /// [`HogLayout::cells`] has them, row by row. Their sum is `‖H(T_A) − H(T_G)‖²`, before the scale divides its root: a cell
     /// that lies in several blocks gets its share of each.

@@ -118,7 +118,8 @@ impl TaskDescriptor for WindowDescriptor {
     }
 
     fn explain<'a>(&'a self, mirror: FrameView<'a>) -> Explanation<'a> {
-        self.comparison.explain(mirror, self.finder.matched)
+        let mask = self.finder.cut_out.as_ref().map(|cut_out| cut_out.mask.view());
+        Explanation { mask, ..self.comparison.explain(mirror, self.finder.matched) }
     }
 }
 
@@ -178,6 +179,25 @@ mod tests {
         };
         assert_eq!(score(Some(&mask)).reward, 1.0);
         assert!(score(None).reward < 0.9);
+    }
+
+    #[test]
+    fn the_template_is_what_was_compared() {
+        let goal = texture(6, 6, 1);
+        let mut mask = Frame::new(6, 6);
+        (1..5).for_each(|y| mask.row_mut(y)[1..4].fill(255));
+        mask.row_mut(3)[2] = 0;
+        let mut frame = texture(20, 20, 3);
+        paste(&mut frame, &goal, [9, 5]);
+        let window = WindowParams::default();
+        let mut descriptor = WindowDescriptor::new(&goal, Some(&mask), window, params()).expect("valid");
+        descriptor.observe(frame.view()).expect("it fits");
+        let template = descriptor.explain(frame.view()).agent_template();
+        assert_eq!((template.width(), template.height()), (3, 4));
+        for (x, y) in (0..3).flat_map(|x| (0..4).map(move |y| (x, y))) {
+            let expected = if (x, y) == (1, 2) { 0 } else { goal.view().row(y + 1)[x + 1] };
+            assert_eq!(template.view().row(y)[x], expected, "({x}, {y})");
+        }
     }
 
     /// docs/reward.md goes through this by hand.

@@ -4,7 +4,9 @@ use std::fs::{File, OpenOptions, TryLockError};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use super::{Event, Recorder};
+use serde_json::Value;
+
+use super::{Event, KeptRecorder, Loss, Recorder};
 use crate::error::{Error, Result};
 
 /// Writes training and evaluation records.
@@ -30,34 +32,45 @@ impl JsonlRecorder {
     }
 
     /// Length of the file, in bytes, all of which are then on the disk.
-    ///
-    /// # Errors
-    /// When the file cannot be flushed.
-    pub fn bytes(&self) -> Result<u64> {
+    fn bytes(&self) -> Result<u64> {
         self.file.sync_data().map_err(Error::io("write", &self.path))?;
         Ok(self.file.metadata().map_err(Error::io("read", &self.path))?.len())
-    }
-
-    /// Drops what a killed run wrote after its last checkpoint: the resumed run writes it again.
-    ///
-    /// # Errors
-    /// When less than `bytes` bytes are there, or the file cannot be cut.
-    pub fn truncate(&mut self, bytes: u64) -> Result<()> {
-        let found = self.bytes()?;
-        if found < bytes {
-            return Err(Error::checkpoint(&self.path, format!("{found} bytes"), format!("at least {bytes}")));
-        }
-        self.file.set_len(bytes).map_err(Error::io("cut", &self.path))
     }
 }
 
 impl Recorder for JsonlRecorder {
-    fn record(&mut self, event: &Event) -> Result<()> {
-        if matches!(event, Event::Progress(_) | Event::Checkpoint(_)) {
+    fn record(&mut self, event: &Event<'_>) -> Result<()> {
+        if !matches!(event, Event::Train(_) | Event::Evaluation(_)) {
             return Ok(());
         }
         let mut line = serde_json::to_vec(event).expect("records hold only numbers and strings");
         line.push(b'\n');
         self.file.write_all(&line).map_err(Error::io("write", &self.path))
+    }
+}
+
+impl KeptRecorder for JsonlRecorder {
+    fn name(&self) -> &'static str {
+        "metrics.jsonl"
+    }
+
+    fn mark(&mut self, _due: bool) -> Result<Value> {
+        Ok(self.bytes()?.into())
+    }
+
+    /// The numbers of a run are never given up: a file that is too short is an error.
+    fn rewind(&mut self, mark: Option<&Value>) -> Result<Option<Loss>> {
+        let mark = mark.map_or(Some(0), Value::as_u64);
+        let mark = mark.ok_or_else(|| Error::checkpoint(&self.path, "another mark in it", "a length"))?;
+        let found = self.bytes()?;
+        if found < mark {
+            return Err(Error::checkpoint(&self.path, format!("{found} bytes"), format!("at least {mark}")));
+        }
+        self.file.set_len(mark).map_err(Error::io("cut", &self.path))?;
+        Ok(None)
+    }
+
+    fn finish(&mut self) -> Result<()> {
+        self.file.sync_all().map_err(Error::io("write", &self.path))
     }
 }

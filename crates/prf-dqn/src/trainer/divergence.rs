@@ -89,7 +89,7 @@ impl fmt::Display for Divergence {
 impl Trainer {
     /// The error of a loss that is no number. The network, the batch and the figures are saved, if they can be, for somebody to
     /// look at.
-    pub(super) fn diverged(&self, update: &Update) -> Result<Error> {
+    pub(super) fn diverged(&mut self, update: &Update) -> Result<Error> {
         let (values, targets) = (update.values()?, update.targets()?);
         let divergence = Divergence {
             step: self.counters.steps,
@@ -105,8 +105,9 @@ impl Trainer {
         Ok(Error::Diverged { divergence: Box::new(divergence), saved })
     }
 
-    fn save_diverged(&self, divergence: &Divergence, values: &[f32], targets: &[f32]) -> Result<PathBuf> {
-        let checkpoint = self.checkpoint(&self.retention)?;
+    fn save_diverged(&mut self, divergence: &Divergence, values: &[f32], targets: &[f32]) -> Result<PathBuf> {
+        let records = self.records.mark(false)?;
+        let checkpoint = self.checkpoint(&self.retention, records)?;
         let [height, width] = self.learner.online.architecture().input.map(|side| side as usize);
         let batch = batch_bytes(&self.batch, [height, width], values, targets)
             .expect("names are distinct and sizes consistent");

@@ -8,11 +8,12 @@ use serde::{Deserialize, Serialize};
 
 use super::Trainer;
 use super::lane::Window;
+use super::recording::Recording;
 use crate::checkpoint::{Checkpoint, CheckpointStore, Model, Retention};
 use crate::error::{Error, Result};
 use crate::evaluate::Episode;
 use crate::optimizer::Adam;
-use crate::record::{Event, Recorder, TimeShares, timed};
+use crate::record::{Event, Marks, Recorder, TimeShares, timed};
 use crate::run_dir::RunDir;
 
 /// Names of vectors in a checkpoint.
@@ -45,7 +46,8 @@ struct State {
     updates: u64,
     adam_steps: u64,
     episodes: Vec<Episode>,
-    metrics_bytes: u64,
+    recording: Recording,
+    records: Marks,
     /// This checkpoint and those that stay beside it.
     retention: Retention,
 }
@@ -71,17 +73,20 @@ impl Trainer {
 
     fn write_checkpoint(&mut self) -> Result<()> {
         let step = self.counters.steps;
+        let due = self.is_finished() || step / self.config.train.checkpoint_every_steps > self.counters.checkpoints_due;
         self.counters.checkpoints_due = step / self.config.train.checkpoint_every_steps;
         let segments = self.checkpoints.write_replay(step, &self.replay, self.retention.newest())?;
         let retention = self.retention.with(step, segments, self.config.train.keep_checkpoints);
-        self.checkpoints.write(step, &self.checkpoint(&retention)?, &retention)?;
+        let records = timed(&mut self.time.records_s, || self.records.mark(due))?;
+        self.checkpoints.write(step, &self.checkpoint(&retention, records)?, &retention)?;
         self.retention = retention;
         self.saved_at = Some(step);
         Ok(())
     }
 
-    /// The run as it is now, but for the frames of the replay, which are in the segments that `retention` names.
-    pub(super) fn checkpoint(&self, retention: &Retention) -> Result<Checkpoint> {
+    /// The run as it is now, but for the frames of the replay, which are in the segments that `retention` names, and for its
+    /// records, which are at `records`.
+    pub(super) fn checkpoint(&self, retention: &Retention, records: Marks) -> Result<Checkpoint> {
         let (first, second, adam_steps) = self.learner.optimizer.to_parts()?;
         let mut blobs = BTreeMap::new();
         blobs.insert("rng.exploration".to_owned(), rng::save(&self.exploration));
@@ -105,7 +110,8 @@ impl Trainer {
             updates: self.learner.updates,
             adam_steps,
             episodes: self.lanes.iter().map(|lane| lane.episode).collect(),
-            metrics_bytes: self.metrics.bytes()?,
+            recording: self.recording.clone(),
+            records,
             retention: retention.clone(),
         };
         Ok(Checkpoint {
@@ -119,7 +125,8 @@ impl Trainer {
     /// Goes on from the newest checkpoint; without any, from the beginning.
     pub(super) fn resume(&mut self, run: &RunDir) -> Result<()> {
         let Some(dir) = CheckpointStore::list(run.path())?.pop() else {
-            return self.metrics.truncate(0);
+            self.losses = self.records.rewind(&Marks::new())?;
+            return Ok(());
         };
         let mut checkpoint = Checkpoint::read(&dir, self.learner.online.architecture())?;
         let state: State = serde_json::from_str(&checkpoint.state)
@@ -134,7 +141,8 @@ impl Trainer {
         self.sampling = rng::restore(&checkpoint.blob("rng.replay", &dir)?).map_err(damaged)?;
         self.checkpoints.read_replay(state.retention.newest(), &mut self.replay)?;
         self.restore_priorities(&mut checkpoint, &dir)?;
-        self.metrics.truncate(state.metrics_bytes)?;
+        self.losses = self.records.rewind(&state.records)?;
+        self.recording = state.recording;
         self.saved_at = Some(state.counters.steps);
         self.time = state.counters.time;
         self.counters = state.counters;

@@ -5,7 +5,7 @@ mod state;
 
 use std::cell::{Cell, OnceCell};
 
-use prf_core::{Error as CoreError, Frame, FrameMut, Goal, TaskDescriptor};
+use prf_core::{Error as CoreError, Explanation, Frame, FrameMut, Goal, TaskDescriptor};
 
 pub use self::config::{
     EnvConfig, RewardConfig, RewardForm, RewardSource, StateConfig, StateKind, TaskConfig, WindowConfig,
@@ -187,6 +187,14 @@ impl Task {
     /// The world's picture now.
     pub fn mirror(&self) -> &Frame {
         self.mirror.of(self.environment.as_ref())
+    }
+
+    /// Where the reward of the last step came from; none for a variable reward.
+    pub fn explain(&self) -> Option<Explanation<'_>> {
+        match &self.reward {
+            Reward::Variable => None,
+            Reward::Perceptual { descriptor, .. } => Some(descriptor.explain(self.mirror().view())),
+        }
     }
 
     /// The world.
