@@ -234,9 +234,9 @@ fn a_checkpoint_of_another_network_is_refused_with_both_shapes() {
     let model = newest(&folder.path().join("run")).join("model.safetensors");
     // The same network, but its header now says that it was made for another picture.
     let bytes = fs::read(&model).expect("it was written");
-    let at = bytes.windows(5).position(|window| window == b"84x84").expect("the header names the input");
+    let at = bytes.windows(7).position(|window| window == b"[84,84]").expect("the header names the input");
     let mut other = bytes.clone();
-    other[at..at + 5].copy_from_slice(b"92x92");
+    other[at..at + 7].copy_from_slice(b"[92,92]");
     fs::write(&model, other).expect("the folder is ours");
     prf(folder.path())
         .args(["eval", "run"])
@@ -305,7 +305,7 @@ fn a_run_that_diverges_says_where_and_saves_that_moment() {
     train(folder.path(), &["--out", "run", "--set", "train.reward_scale=1e39", "--set", "train.learning_rate=1"])
         .code(1)
         .stderr(
-            contains("learning diverged at step 112: the loss of update 0 is inf, with rewards from ")
+            contains("learning diverged at step 116: the loss of update 0 is inf, with rewards from ")
                 .and(contains("targets 8 of 8 infinite or NaN"))
                 .and(contains("hint: start anew with a lower train.learning_rate"))
                 .and(contains("run/diverged has the network and the batch of that moment")),
