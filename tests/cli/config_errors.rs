@@ -71,9 +71,27 @@ fn the_config_itself_is_good() {
 fn every_committed_config_is_good() {
     let configs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../configs");
     let elsewhere = tempfile::tempdir().expect("a temporary folder can be made");
-    for config in ["breakout.toml", "breakout-vrf.toml", "paper/breakout.toml", "paper/breakout-vrf.toml"] {
+    for config in [
+        "breakout.toml",
+        "breakout-vrf.toml",
+        "paper/breakout.toml",
+        "paper/breakout-vrf.toml",
+        "experiments/kobian-happy-potential.toml",
+    ] {
         let mut train = prf(elsewhere.path());
         train.arg("train").arg(configs.join(config)).arg("--dry-run").assert().success();
+    }
+}
+
+#[test]
+fn what_the_paper_did_not_have_is_off_in_its_configs() {
+    let configs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../configs/paper");
+    let elsewhere = tempfile::tempdir().expect("a temporary folder can be made");
+    for config in ["breakout.toml", "breakout-vrf.toml"] {
+        let mut train = prf(elsewhere.path());
+        let resolved = train.arg("train").arg(configs.join(config)).arg("--dry-run").assert().success();
+        let off = contains("n_step = 1\n").and(contains("double = false")).and(contains("dueling = false"));
+        resolved.stdout(off.and(contains("form = \"state\"")).and(contains("[train.prioritized]").not()));
     }
 }
 
@@ -205,6 +223,14 @@ fn errors_in_set_show_it_as_it_was_typed() {
         ("train.steps=abc", "`train.steps`: got string \"abc\", expected a whole number"),
         ("train.stepz=5", "unknown key `train.stepz`"),
         ("train.gamma=1.5", "`train.gamma`: got 1.5, expected "),
+        ("train.prioritized.alpha=1.5", "`train.prioritized.alpha`: got 1.5, expected a number from 0 to 1"),
+        ("train.prioritized.beta=0.5", "unknown key `train.prioritized.beta`"),
+        ("train.keep_checkpoints=0", "`train.keep_checkpoints`: got 0, expected from 1 to 1000"),
+        ("reward.form=difference", "`reward.form`: got \"difference\", expected \"state\" or \"potential\""),
+        (
+            "env.solved_within=1",
+            "`env.solved_within`: got 1, expected nothing, because \"breakout\" has no end by success",
+        ),
         ("train.reward_scale=0", "`train.reward_scale`: got 0, expected a finite number above 0"),
         (
             "env.name=pong",

@@ -39,6 +39,9 @@ fn the_faces_goals_are_the_oracles_episodes() {
         prf(folder.path()).args(play).assert().success();
         same_bytes(&folder.path().join(&gif), &gif);
     }
+    let play = ["play", "kobian-happy", "--player", "oracle", "--frames", "frames"];
+    prf(folder.path()).args(play).assert().success();
+    same_bytes(&folder.path().join("frames/0010.png"), "kobian-happy.png");
 }
 
 /// A figure of `prf inspect` on a config, with the changes that `options` make.

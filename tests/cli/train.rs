@@ -234,9 +234,9 @@ fn a_checkpoint_of_another_network_is_refused_with_both_shapes() {
     let model = newest(&folder.path().join("run")).join("model.safetensors");
     // The same network, but its header now says that it was made for another picture.
     let bytes = fs::read(&model).expect("it was written");
-    let at = bytes.windows(5).position(|window| window == b"84x84").expect("the header names the input");
+    let at = bytes.windows(7).position(|window| window == b"[84,84]").expect("the header names the input");
     let mut other = bytes.clone();
-    other[at..at + 5].copy_from_slice(b"92x92");
+    other[at..at + 7].copy_from_slice(b"[92,92]");
     fs::write(&model, other).expect("the folder is ours");
     prf(folder.path())
         .args(["eval", "run"])
@@ -245,21 +245,121 @@ fn a_checkpoint_of_another_network_is_refused_with_both_shapes() {
         .stderr(contains("model.safetensors").and(contains("got")).and(contains("expected")));
 }
 
-#[test]
-fn a_full_disk_ends_the_run_with_its_last_checkpoint_whole() {
-    let folder = folder();
-    // No file may grow beyond 8 MB, half of a checkpoint: what a full disk does to the write in mid-file.
+/// `prf train c.toml` with `args` where no file may grow beyond 8 MB, half of a checkpoint: what a full disk does to a write in
+/// mid-file.
+fn train_on_a_full_disk(folder: &Path, args: &str) -> assert_cmd::assert::Assert {
     let prf = assert_cmd::cargo::cargo_bin!("prf");
-    let script = format!("trap '' XFSZ; ulimit -f 8192; exec '{}' train c.toml --out full", prf.display());
-    let output = Command::new("bash").args(["-c", &script]).current_dir(folder.path()).output().expect("bash runs");
-    let words = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(1), "{words}");
-    assert!(words.contains("cannot write full/checkpoints/") && words.contains("--resume"), "{words}");
-    let left = fs::read_dir(folder.path().join("full/checkpoints")).expect("it is there");
-    let partial = left.filter_map(Result::ok).map(|entry| entry.file_name()).collect::<Vec<_>>();
-    assert!(partial.iter().all(|name| !name.to_string_lossy().contains("partial")), "{partial:?}");
+    let script = format!("ulimit -f 8192; exec '{}' train c.toml {args}", prf.display());
+    assert_cmd::Command::new("bash").args(["-c", &script]).current_dir(folder).assert()
+}
+
+/// Every file below a folder with what it holds.
+fn contents(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
+    let entries = fs::read_dir(folder).expect("it is there").map(|entry| entry.expect("it can be listed").path());
+    let mut files: Vec<_> = entries
+        .flat_map(|path| {
+            if path.is_dir() { contents(&path) } else { vec![(path.clone(), fs::read(&path).expect("it is ours"))] }
+        })
+        .collect();
+    files.sort();
+    files
+}
+
+#[test]
+fn a_full_disk_ends_the_run_and_leaves_no_half_checkpoint() {
+    let folder = folder();
+    train_on_a_full_disk(folder.path(), "--out full").code(1).stderr(
+        contains("cannot write full/checkpoints/")
+            .and(contains("make room, then go on with\n"))
+            .and(contains("--resume")),
+    );
+    assert_eq!(contents(&folder.path().join("full/checkpoints")), []);
     // With room again, the run goes on.
-    train(folder.path(), &["--out", "full", "--resume"]).success();
+    train(folder.path(), &["--out", "full", "--resume"])
+        .success()
+        .stderr(contains("the run has no checkpoint yet: starting from its beginning"));
+}
+
+#[test]
+fn a_disk_that_fills_up_leaves_the_checkpoints_before_as_they_were() {
+    let folder = folder();
+    let run = folder.path().join("run");
+    train(folder.path(), &["--out", "run"]).success();
+    let (whole, last) = (metrics(&run), contents(&newest(&run)));
+    fs::remove_dir_all(newest(&run)).expect("the folder is ours");
+    let before = contents(&newest(&run));
+    train_on_a_full_disk(folder.path(), "--out run --resume")
+        .code(1)
+        .stderr(contains("what was saved before is whole"));
+    assert_eq!(contents(&newest(&run)), before);
+    train(folder.path(), &["--out", "run", "--resume"]).success().stderr(contains("going on from step"));
+    let model =
+        |files: &[(PathBuf, Vec<u8>)]| files.iter().find(|(path, _)| path.ends_with("model.safetensors")).cloned();
+    assert_eq!(metrics(&run), whole);
+    assert!(model(&contents(&newest(&run))) == model(&last), "the models differ");
+}
+
+#[test]
+fn a_run_that_diverges_says_where_and_saves_that_moment() {
+    let folder = folder();
+    train(folder.path(), &["--out", "run", "--set", "train.reward_scale=1e39", "--set", "train.learning_rate=1"])
+        .code(1)
+        .stderr(
+            contains("learning diverged at step 116: the loss of update 0 is inf, with rewards from ")
+                .and(contains("targets 8 of 8 infinite or NaN"))
+                .and(contains("hint: start anew with a lower train.learning_rate"))
+                .and(contains("run/diverged has the network and the batch of that moment")),
+        );
+    let names: Vec<_> = contents(&folder.path().join("run/diverged")).into_iter().map(|(path, _)| path).collect();
+    let expected = ["batch.safetensors", "model.safetensors", "report.json", "state.safetensors"];
+    assert_eq!(names, expected.map(|name| folder.path().join("run/diverged").join(name)));
+    // The network of before can be played.
+    prf(folder.path()).args(["eval", "run/diverged", "--episodes", "1"]).assert().success();
+}
+
+#[test]
+fn a_checkpoint_of_another_prf_is_refused_with_what_to_do() {
+    let folder = folder();
+    let run = folder.path().join("run");
+    train(folder.path(), &["--out", "run"]).success();
+    let model = newest(&run).join("model.safetensors");
+    let whole = fs::read(&model).expect("it was written");
+    let ours = br#"\"format\":2,"#;
+    let at = whole.windows(ours.len()).position(|window| window == ours).expect("the header names the format");
+    let cases: [(&[u8], &str, &str); 2] = [
+        (br#"\"format\":7,"#, "got format 7 of prf 0.1.0", "hint: use prf 0.1.0 or a newer one"),
+        (br#"\"former\":1,"#, "got format 1 of prf 0.1.0", "hint: train anew with another --out"),
+    ];
+    for (other, got, hint) in cases {
+        let mut bytes = whole.clone();
+        bytes[at..at + other.len()].copy_from_slice(other);
+        fs::write(&model, bytes).expect("the folder is ours");
+        let before = contents(&run);
+        let refused =
+            || contains("model.safetensors").and(contains(got)).and(contains("expected format 2")).and(contains(hint));
+        train(folder.path(), &["--out", "run", "--resume"]).code(1).stderr(refused());
+        prf(folder.path()).args(["eval", "run"]).assert().code(1).stderr(refused());
+        assert!(contents(&run) == before, "something was changed");
+    }
+}
+
+#[test]
+fn of_two_runs_begun_in_one_folder_at_once_one_is_refused() {
+    let folder = folder();
+    let begin = |seed: &str| {
+        let mut command = Command::new(assert_cmd::cargo::cargo_bin!("prf"));
+        command.current_dir(folder.path()).args(["train", "c.toml", "--out", "run", "--seed", seed]);
+        command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().expect("prf starts")
+    };
+    let outputs = [begin("1"), begin("2")].map(|child| child.wait_with_output().expect("prf ends"));
+    let winner = outputs.iter().position(|output| output.status.success()).expect("one of them trains");
+    let refused = &outputs[1 - winner];
+    let words = String::from_utf8_lossy(&refused.stderr);
+    assert!(matches!(refused.status.code(), Some(1 | 2)) && words.contains("hint: "), "{words}");
+    let config = fs::read_to_string(folder.path().join("run/config.toml")).expect("a run has a config");
+    assert!(config.contains(&format!("seed = {}\n", winner + 1)), "{config}");
+    let seed = (winner + 1).to_string();
+    train(folder.path(), &["--out", "run", "--resume", "--seed", &seed]).success();
 }
 
 #[test]
@@ -270,7 +370,7 @@ fn a_run_folder_in_use_is_refused() {
     let second = train(folder.path(), &more);
     signal(&child, "-KILL");
     child.wait_with_output().expect("prf ends");
-    second.code(1).stderr(contains("metrics.jsonl is being written by another prf"));
+    second.code(1).stderr(contains("metrics.jsonl is being written by another prf").and(contains("hint: wait until")));
 }
 
 #[test]

@@ -47,8 +47,8 @@ pub enum Error {
     Diverged {
         /// What was found.
         divergence: Box<Divergence>,
-        /// The directory with the network and the batch of that moment, unless it could not be written.
-        saved: Option<PathBuf>,
+        /// The directory with the network and the batch of that moment, or why it could not be written.
+        saved: Result<PathBuf, Box<Error>>,
     },
     /// A reward that cannot be learned from.
     #[error("the reward of environment {environment} in step {step} is {reward}, expected a finite number")]

@@ -6,11 +6,14 @@ use std::fs;
 use std::path::Path;
 
 use prf_core::{Frame, Goal};
+use prf_dqn::checkpoint::{CheckpointStore, FORMAT, Model};
 use prf_dqn::compute::Precision;
-use prf_dqn::config::RunConfig;
+use prf_dqn::config::{PrioritizedConfig, RunConfig};
 use prf_dqn::record::{Event, Recorder};
 use prf_dqn::run_dir::RunDir;
 use prf_dqn::trainer::{Ending, Trainer, set_threads};
+use prf_envs::RewardForm;
+use safetensors::SafeTensors;
 
 /// Small in every respect, but with updates, target copies, evaluations, truncations and a replay that overflows.
 const CONFIG: &str = r#"
@@ -40,6 +43,16 @@ decay_steps = 300
 every_episodes = 6
 episodes = 3
 "#;
+
+/// The same with every part that has something of its own to remember.
+fn everything_on() -> RunConfig {
+    let mut config = config();
+    config.reward.form = RewardForm::Potential;
+    config.train.dueling = true;
+    config.train.n_step = 3;
+    config.train.prioritized = Some(PrioritizedConfig::default());
+    config
+}
 
 struct Silent;
 
@@ -87,7 +100,7 @@ fn final_model(dir: &Path) -> Vec<u8> {
 }
 
 fn newest_checkpoint(dir: &Path) -> std::path::PathBuf {
-    prf_dqn::checkpoint::CheckpointStore::list(dir).unwrap().pop().unwrap()
+    CheckpointStore::list(dir).unwrap().pop().unwrap()
 }
 
 #[test]
@@ -105,8 +118,9 @@ fn the_same_seed_gives_the_same_run_and_another_seed_another() {
 
 #[test]
 fn interrupted_runs_continue_to_the_same_bits() {
-    for precision in [Precision::F32, Precision::Bf16] {
-        let mut config = config();
+    for (precision, mut config) in
+        [(Precision::F32, config()), (Precision::Bf16, config()), (Precision::F32, everything_on())]
+    {
         config.train.precision = precision;
         let (whole, parts) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
         train(&config, whole.path(), usize::MAX);
@@ -114,8 +128,33 @@ fn interrupted_runs_continue_to_the_same_bits() {
             assert_eq!(train(&config, parts.path(), rounds), Ending::Interrupted);
         }
         assert_eq!(train(&config, parts.path(), usize::MAX), Ending::Finished);
-        assert_eq!(metrics(parts.path()), metrics(whole.path()), "{precision:?}");
-        assert_eq!(final_model(parts.path()), final_model(whole.path()), "{precision:?}");
+        assert_eq!(metrics(parts.path()), metrics(whole.path()));
+        assert_eq!(final_model(parts.path()), final_model(whole.path()));
+    }
+}
+
+#[test]
+fn each_switch_changes_what_is_learned() {
+    let mut short = config();
+    short.train.steps = Some(200);
+    let trained = |config: &RunConfig| {
+        let dir = tempfile::tempdir().unwrap();
+        train(config, dir.path(), usize::MAX);
+        final_model(dir.path())
+    };
+    let mut models = vec![trained(&short)];
+    let switches: [fn(&mut RunConfig); 4] = [
+        |config| config.train.double = false,
+        |config| config.train.dueling = true,
+        |config| config.train.prioritized = Some(PrioritizedConfig::default()),
+        |config| config.reward.form = RewardForm::Potential,
+    ];
+    for switch in switches {
+        let mut config = short.clone();
+        switch(&mut config);
+        let model = trained(&config);
+        assert!(!models.contains(&model));
+        models.push(model);
     }
 }
 
@@ -151,17 +190,129 @@ fn a_run_killed_before_its_first_checkpoint_starts_over() {
 }
 
 #[test]
-fn only_the_newest_two_checkpoints_and_their_replay_are_kept() {
-    let dir = tempfile::tempdir().unwrap();
-    train(&config(), dir.path(), usize::MAX);
-    let kept = prf_dqn::checkpoint::CheckpointStore::list(dir.path()).unwrap();
-    assert_eq!(kept.len(), 2);
-    // The older of the two must still be good to resume from, whose replay has partly been overwritten since.
-    fs::remove_dir_all(&kept[1]).unwrap();
-    assert_eq!(train(&config(), dir.path(), usize::MAX), Ending::Finished);
+fn only_the_newest_checkpoints_and_their_replay_are_kept() {
     let whole = tempfile::tempdir().unwrap();
     train(&config(), whole.path(), usize::MAX);
-    assert_eq!(final_model(dir.path()), final_model(whole.path()));
+    for keep in [1, 3] {
+        let dir = tempfile::tempdir().unwrap();
+        let mut config = config();
+        config.train.keep_checkpoints = keep;
+        train(&config, dir.path(), usize::MAX);
+        let kept = CheckpointStore::list(dir.path()).unwrap();
+        assert_eq!(kept.len(), keep);
+        // Each must still be good to resume from, though its replay has partly been overwritten since.
+        for newer in (1..keep).rev() {
+            fs::remove_dir_all(&kept[newer]).unwrap();
+        }
+        assert_eq!(train(&config, dir.path(), usize::MAX), Ending::Finished);
+        assert_eq!(CheckpointStore::list(dir.path()).unwrap().len(), keep);
+        assert_eq!(final_model(dir.path()), final_model(whole.path()));
+    }
+}
+
+/// Puts `to` in the place of `from`, of the same length, in the header of a file.
+fn patch(path: &Path, from: &str, to: &str) {
+    let mut bytes = fs::read(path).unwrap();
+    let at = bytes.windows(from.len()).position(|window| window == from.as_bytes()).unwrap();
+    bytes[at..at + from.len()].copy_from_slice(to.as_bytes());
+    fs::write(path, bytes).unwrap();
+}
+
+#[test]
+fn checkpoints_of_other_formats_are_refused_and_left_alone() {
+    let dir = tempfile::tempdir().unwrap();
+    train(&config(), dir.path(), 60);
+    let checkpoint = newest_checkpoint(dir.path());
+    let ours = format!(r#"\"format\":{FORMAT},"#);
+    for file in ["model.safetensors", "state.safetensors"] {
+        let path = checkpoint.join(file);
+        let whole = fs::read(&path).unwrap();
+        for (to, expected) in
+            [(r#"\"format\":9,"#, "format 9 of prf 0.1.0"), (r#"\"farmat\":2,"#, "format 1 of prf 0.1.0")]
+        {
+            patch(&path, &ours, to);
+            let found = fs::read(&path).unwrap();
+            let error = open(&config(), dir.path()).err().unwrap();
+            let text = error.to_string();
+            assert!(matches!(error, prf_dqn::Error::Format { .. }), "{text}");
+            assert!(text.contains(file) && text.contains(expected) && text.contains("expected format 2"), "{text}");
+            assert_eq!(fs::read(&path).unwrap(), found);
+            fs::write(&path, &whole).unwrap();
+        }
+    }
+    let foreign = safetensors::tensor::TensorView::new(safetensors::Dtype::U8, vec![1], &[7]).unwrap();
+    fs::write(checkpoint.join("model.safetensors"), safetensors::serialize([("weight", foreign)], None).unwrap())
+        .unwrap();
+    let error = open(&config(), dir.path()).err().unwrap().to_string();
+    assert!(error.contains("a file that prf did not write"), "{error}");
+}
+
+#[test]
+fn a_checkpoint_of_another_network_is_refused_with_both_networks() {
+    let dir = tempfile::tempdir().unwrap();
+    train(&config(), dir.path(), 60);
+    let mut other = config();
+    other.train.dueling = true;
+    let error = open(&other, dir.path()).err().unwrap().to_string();
+    assert!(error.contains("got a network for") && error.contains("expected a dueling network for"), "{error}");
+}
+
+#[test]
+fn priorities_that_do_not_fit_the_replay_are_damage() {
+    let dir = tempfile::tempdir().unwrap();
+    train(&everything_on(), dir.path(), 60);
+    let path = newest_checkpoint(dir.path()).join("state.safetensors");
+    let mut bytes = fs::read(&path).unwrap();
+    let priorities =
+        SafeTensors::deserialize(&bytes).unwrap().tensor("replay.priorities").unwrap().data().as_ptr_range();
+    let at = priorities.start as usize - bytes.as_ptr() as usize;
+    bytes[at..at + 4].copy_from_slice(&(-1.0f32).to_le_bytes());
+    fs::write(&path, bytes).unwrap();
+    let error = open(&everything_on(), dir.path()).err().unwrap().to_string();
+    assert!(error.contains("priority of -1 for row 0") && error.contains("expected"), "{error}");
+}
+
+#[test]
+fn a_second_trainer_is_refused_before_it_changes_anything() {
+    let dir = tempfile::tempdir().unwrap();
+    train(&config(), dir.path(), 60);
+    let running = open(&config(), dir.path()).unwrap();
+    // As if the first were in the middle of a checkpoint, which the second would take for a leftover.
+    let partial = dir.path().join("checkpoints/.partial-step-000000009999");
+    fs::create_dir(&partial).unwrap();
+    let metrics_before = fs::read(dir.path().join("metrics.jsonl")).unwrap();
+    assert!(matches!(open(&config(), dir.path()).err().unwrap(), prf_dqn::Error::Busy { .. }));
+    assert!(partial.exists());
+    assert_eq!(fs::read(dir.path().join("metrics.jsonl")).unwrap(), metrics_before);
+    drop(running);
+    open(&config(), dir.path()).unwrap();
+}
+
+#[test]
+fn a_run_that_diverges_stops_and_leaves_its_last_moment_to_be_looked_at() {
+    let dir = tempfile::tempdir().unwrap();
+    let mut config = RunConfig { reward: config().reward, ..everything_on() };
+    (config.train.reward_scale, config.train.learning_rate, config.train.final_learning_rate) = (1e38, 1.0, None);
+    let mut trainer = open(&config, dir.path()).unwrap();
+    let error = trainer.run(&mut Silent, &|| false).err().unwrap();
+    let prf_dqn::Error::Diverged { divergence, saved } = &error else { panic!("{error}") };
+    assert!(divergence.step >= 100 && divergence.rewards.not_finite == 0, "{divergence}");
+    let text = error.to_string();
+    assert!(text.contains(&format!("at step {}", divergence.step)) && text.contains("targets from"), "{text}");
+
+    let saved = saved.as_ref().unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(saved, &dir.path().join("diverged"));
+    let report: serde_json::Value = serde_json::from_slice(&fs::read(saved.join("report.json")).unwrap()).unwrap();
+    assert_eq!(report["step"], divergence.step);
+    assert_eq!(report["rewards"]["count"], 8);
+    let batch = fs::read(saved.join("batch.safetensors")).unwrap();
+    let batch = SafeTensors::deserialize(&batch).unwrap();
+    assert_eq!(batch.tensor("states").unwrap().shape(), [8, 84, 84]);
+    for name in ["rewards", "discounts", "weights", "values", "targets"] {
+        assert_eq!(batch.tensor(name).unwrap().shape(), [8], "{name}");
+    }
+    assert!(Model::read(&saved.join("model.safetensors")).unwrap().architecture.dueling);
+    assert!(saved.join("state.safetensors").is_file());
 }
 
 #[test]
@@ -190,6 +341,20 @@ fn a_checkpoint_of_another_configuration_is_refused() {
     other.train.gamma = 0.5;
     let error = open(&other, dir.path()).err().unwrap().to_string();
     assert!(error.contains("another configuration"), "{error}");
+}
+
+#[test]
+fn a_beginning_that_was_killed_can_be_begun_again() {
+    let dir = tempfile::tempdir().unwrap();
+    for name in ["goal.png", "metrics.jsonl", ".partial-config.toml"] {
+        fs::write(dir.path().join(name), "").unwrap();
+    }
+    RunDir::create(dir.path(), &config(), None).unwrap();
+    // Records are somebody's.
+    let other = tempfile::tempdir().unwrap();
+    fs::write(other.path().join("metrics.jsonl"), "{}\n").unwrap();
+    RunDir::create(other.path(), &config(), None).unwrap_err();
+    assert_eq!(fs::read_dir(other.path()).unwrap().count(), 1);
 }
 
 #[test]

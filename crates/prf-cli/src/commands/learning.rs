@@ -67,11 +67,12 @@ pub(super) fn explain(error: anyhow::Error, resume: Option<&str>) -> anyhow::Err
             CliError::failed(error.to_string()).hint("use it with the config.toml of its own run").into()
         }
         Some(prf_dqn::Error::Diverged { saved, .. }) => {
-            let look = saved.as_ref().map_or(String::new(), |dir| {
-                format!("; {} has the network and the batch of that moment, to look at", dir.display())
-            });
+            let look = match saved {
+                Ok(dir) => format!("{} has the network and the batch of that moment, to look at", dir.display()),
+                Err(error) => format!("the network and the batch of that moment are lost: {error}"),
+            };
             let hint = format!(
-                "start anew with a lower train.learning_rate, or with a train.reward_scale that brings sums of rewards near 1{look}"
+                "start anew with a lower train.learning_rate, or with a train.reward_scale that brings sums of rewards near 1; {look}"
             );
             CliError::failed(error.to_string()).hint(hint).into()
         }

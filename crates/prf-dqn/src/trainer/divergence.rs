@@ -101,7 +101,7 @@ impl Trainer {
             parameters: Figures::of(&self.learner.online.to_vec()?),
         };
         // The divergence is the error to tell, even where it can't be saved.
-        let saved = self.save_diverged(&divergence, &values, &targets).ok();
+        let saved = self.save_diverged(&divergence, &values, &targets).map_err(Box::new);
         Ok(Error::Diverged { divergence: Box::new(divergence), saved })
     }
 

@@ -69,7 +69,8 @@ fn impossible_states_are_refused() {
         let face = Face::new(levels).expect("within its levels");
         state::save(Expression::Happy, Some(&Episode { face, steps, status }))
     };
-    let load = |bytes: &[u8]| state::load(Expression::Happy, bytes, 10);
+    let world = Kobian::new(Expression::Happy, 10).expect("above 0");
+    let load = |bytes: &[u8]| state::load(&world, bytes);
     assert!(load(&state(3, [1, 1, -1, 0, 0, 0], Status::Running)).is_ok());
     for (steps, levels, status) in [
         (2, [1, 1, -1, 0, 0, 0], Status::Running),
