@@ -191,7 +191,8 @@ def test_results_do_not_depend_on_threads(preset: str, goal: str | None, threads
 
 @pytest.mark.parametrize("threads", [2, 1024])
 def test_threads_may_be_limited(threads: int) -> None:
-    one, many = (gym.make_vec("PRF/KobianFace-v0", 9, threads=count) for count in (1, threads))
+    made: list[Any] = [gym.make_vec("PRF/KobianFace-v0", 9, threads=count) for count in (1, threads)]
+    one, many = made
     again = pickle.loads(pickle.dumps(one))
     assert [envs._tasks.__getnewargs_ex__()[1]["threads"] for envs in (one, many, again)] == [1, threads, 1]
     assert_equal(one.reset(seed=3), many.reset(seed=3))
