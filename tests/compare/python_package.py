@@ -153,7 +153,7 @@ def rendered(env):
 
 
 def vector(name, num_envs=64, **options):
-    envs = gym.make_vec(name, num_envs=num_envs, **{"reward": "variable", "state": "mirror", **options})
+    envs = gym.make_vec(name, num_envs=num_envs, threads=1, **{"reward": "variable", "state": "mirror", **options})
     return stepped(envs)
 
 

@@ -107,10 +107,10 @@ impl VectorTask {
         Ok(VectorTask { lanes, threads, spec: *registry::make(&config.env)?.spec() })
     }
 
-    /// The same with at most this number of threads; 0 counts as 1.
+    /// The same with this number of threads; 0 counts as 1, and more than tasks as one for each.
     #[must_use]
     pub fn with_threads(self, threads: usize) -> VectorTask {
-        VectorTask { threads: threads.max(1), ..self }
+        VectorTask { threads: threads.clamp(1, self.lanes.len().max(1)), ..self }
     }
 
     /// The world's fixed facts.

@@ -41,6 +41,11 @@ impl Threads {
         }
     }
 
+    /// The most threads, if that was said.
+    pub(crate) fn most(self) -> Option<usize> {
+        self.0
+    }
+
     /// How many threads to take for `count` pictures of this shape; at least 1.
     pub(crate) fn count(self, count: usize, [height, width]: [usize; 2]) -> usize {
         let useful = (count * height * width / PIXELS_A_THREAD).clamp(1, count.max(1));
@@ -63,10 +68,7 @@ pub(crate) fn each<'py, P: Element, T: Element, D: Dimension, S: Clone + Send>(
     work: impl Fn(&mut S, &[P], &mut [T]) -> Result<(), Error> + Send + Sync,
 ) -> PyResult<Bound<'py, PyArray<T, D>>> {
     let (py, count, pixels) = (pictures.py(), pictures.count(), pictures.pixels()?);
-    // NumPy's own way, as it raises a MemoryError where there is no room.
-    let shape = PyTuple::new(py, [&[count], shape].concat())?;
-    let results = py.import("numpy")?.call_method1("empty", (shape, T::get_dtype(py)))?;
-    let results = results.cast_into::<PyArray<T, D>>()?;
+    let results = empty::<T, D>(py, &[&[count], shape].concat())?;
     let mut writing = results.try_readwrite()?;
     let values = writing.as_slice_mut()?;
     let mut states = vec![state; threads.count(count, pictures.shape())];
@@ -74,6 +76,15 @@ pub(crate) fn each<'py, P: Element, T: Element, D: Dimension, S: Clone + Send>(
         .map_err(|(at, error)| value_error(&format!("{name}[{at}]"), &error))?;
     drop(writing);
     Ok(results)
+}
+
+/// An array that is still to be filled: NumPy's own, as it raises a MemoryError where there is no room.
+pub(crate) fn empty<'py, T: Element, D: Dimension>(
+    py: Python<'py>,
+    shape: &[usize],
+) -> PyResult<Bound<'py, PyArray<T, D>>> {
+    let array = py.import("numpy")?.call_method1("empty", (PyTuple::new(py, shape)?, T::get_dtype(py)))?;
+    Ok(array.cast_into()?)
 }
 
 /// Calls `work` for each of `count` inputs, which lie one after the other in `inputs` as their results do in `outputs`.

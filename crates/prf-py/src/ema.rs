@@ -161,11 +161,12 @@ impl EmaState {
     }
 
     fn __setstate__(&self, values: &Bound<'_, PyArray2<f32>>) -> PyResult<()> {
-        let values = values.try_readonly()?;
         let shape = [values.shape()[0], values.shape()[1]];
         *self.average.lock()? = match shape {
             [0, 0] => None,
             _ => {
+                // Row by row, whatever the order of the array itself is.
+                let values = values.call_method0("copy")?.cast_into::<PyArray2<f32>>()?.try_readonly()?;
                 let values = values.as_slice()?;
                 let restored = Average::new(shape, self.decay).and_then(|mut average| {
                     average.ema.restore(values)?;

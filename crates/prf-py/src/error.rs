@@ -28,7 +28,7 @@ pub(crate) fn file_error(error: &Error) -> PyErr {
             os_error(EISDIR, problem, path)
         }
         Error::Picture { path, problem: PictureProblem::Io(error) } => match error.raw_os_error() {
-            Some(number) => os_error(number, error, path),
+            Some(number) => system_error(number, error, path),
             None => PyOSError::new_err(format!("{}: {error}", path.display())),
         },
         Error::InvalidParam { .. } => value_error("goal", error),
@@ -39,6 +39,12 @@ pub(crate) fn file_error(error: &Error) -> PyErr {
 /// A message with the arguments' names in Python for keys of a configuration.
 pub(crate) fn in_python(message: &str) -> String {
     ["delta.divisor", "delta.duration"].iter().fold(message.to_owned(), |text, key| text.replace(key, argument(key)))
+}
+
+/// The same for a number that the system gave. On Windows Python takes the last argument for it and ignores the first; elsewhere
+/// it ignores the last.
+fn system_error(number: i32, problem: &impl ToString, path: &Path) -> PyErr {
+    PyOSError::new_err((number, problem.to_string(), path.as_os_str().to_owned(), number))
 }
 
 /// Python itself makes a `FileNotFoundError` and so on of it.

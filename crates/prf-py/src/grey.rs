@@ -4,13 +4,15 @@ use numpy::{PyArray2, PyArray3, PyArrayMethods, PyUntypedArray, PyUntypedArrayMe
 use prf_core::{Error, Frame, FrameView, Resizer, luma};
 use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyTuple};
 
 use crate::error::value_error;
-use crate::image::Picture;
+use crate::image::{self, Picture};
 use crate::limits::MAX_SIDE;
 use crate::options::Options;
 use crate::values;
+
+const SHAPES: &str = "(height, width), (height, width, 1), (height, width, 3) or (height, width, 4)";
 
 /// A picture in grey, as goals and frames have to be.
 ///
@@ -21,9 +23,9 @@ use crate::values;
 /// ----------
 /// image : (H, W), (H, W, 1), (H, W, 3) or (H, W, 4) ndarray of uint8
 ///     Grey, or red, green and blue, and alpha.
-/// size : (int, int), optional
-///     Height and width in pixels to bring it to, 1 to 16384: bilinear, with a filter that is widened along a side
-///     that shrinks.
+/// size : int or (int, int), optional
+///     Side of a square, or height and width, in pixels to bring it to, 1 to 16384: bilinear, with a filter that is
+///     widened along a side that shrinks.
 ///
 /// Returns
 /// -------
@@ -33,7 +35,7 @@ use crate::values;
 /// Raises
 /// ------
 /// TypeError
-///     The image is no array of ``uint8``, or ``size`` no pair of integers.
+///     The image is no array of ``uint8``, or ``size`` neither an integer nor a pair of them.
 /// ValueError
 ///     The image has another shape, or a side of 0 or above 16384; or ``size`` is out of range.
 ///
@@ -58,9 +60,11 @@ pub(crate) fn to_grey<'py>(
     let size = options.raw("size")?.filter(|size| !size.is_none()).map(|size| read_size(&size)).transpose()?;
     options.finish()?;
     let py = image.py();
-    let grey = match image.cast::<PyUntypedArray>() {
-        Ok(array) if array.ndim() == 3 => from_colours(array)?,
-        _ => Picture::read("image", image)?.view()?.to_frame(),
+    let array = image::untyped("image", image, SHAPES)?;
+    let grey = match array.ndim() {
+        2 => Picture::read("image", image)?.view()?.to_frame(),
+        3 => from_colours(array)?,
+        _ => return Err(wrong_shape(array)),
     };
     let grey = match size {
         Some(size) if size != [grey.height(), grey.width()] => {
@@ -86,7 +90,7 @@ fn from_colours(array: &Bound<'_, PyUntypedArray>) -> PyResult<Frame> {
     let py = array.py();
     let rows = py.import("numpy")?.call_method1("ascontiguousarray", (array,))?;
     let Ok(rows) = rows.cast::<PyArray3<u8>>() else {
-        return Err(PyTypeError::new_err(format!("image: got an array of {}, expected uint8", array.dtype())));
+        return Err(image::wrong_dtype("image", array, image::BYTES));
     };
     let rows = rows.try_readonly()?;
     let pixels = rows.as_slice()?;
@@ -94,18 +98,16 @@ fn from_colours(array: &Bound<'_, PyUntypedArray>) -> PyResult<Frame> {
 }
 
 fn wrong_shape(array: &Bound<'_, PyUntypedArray>) -> PyErr {
-    let got = array.shape().iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
-    let expected = format!(
-        "(height, width), (height, width, 1), (height, width, 3) or (height, width, 4) with sides of 1 to {MAX_SIDE}"
-    );
-    PyValueError::new_err(format!("image: got shape ({got}), expected {expected}"))
+    image::wrong_shape("image", array.shape(), SHAPES, "")
 }
 
 fn read_size(size: &Bound<'_, PyAny>) -> PyResult<[usize; 2]> {
     let message = || -> PyResult<String> {
-        Ok(format!("size: got {}, expected (height, width) of 1 to {MAX_SIDE} pixels", size.repr()?))
+        Ok(format!("size: got {}, expected a side or (height, width) of 1 to {MAX_SIDE} pixels", size.repr()?))
     };
-    match size.extract::<(i64, i64)>() {
+    let is_pair = size.is_instance_of::<PyTuple>();
+    let sides = if is_pair { size.extract() } else { size.extract().map(|side: i64| (side, side)) };
+    match sides {
         Ok((height, width)) => match [height, width].map(usize::try_from) {
             [Ok(height @ 1..=MAX_SIDE), Ok(width @ 1..=MAX_SIDE)] => Ok([height, width]),
             _ => Err(PyValueError::new_err(message()?)),

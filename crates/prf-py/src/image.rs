@@ -11,6 +11,9 @@ use pyo3::types::{IntoPyDict, PyType};
 use crate::error::value_error;
 use crate::limits::MAX_SIDE;
 
+/// The type of a picture's values, and what to do with others.
+pub(crate) const BYTES: &str = "uint8; for floats in [0, 1] give (255 * array).round().astype(np.uint8)";
+
 /// One picture or several of one size.
 pub(crate) trait Rank: Dimension {
     const SHAPE: &str;
@@ -36,18 +39,16 @@ pub(crate) type Pictures<'py> = Array<'py, u8, Ix3>;
 impl<'py, R: Rank> Array<'py, u8, R> {
     /// Takes the argument `name`, which must be an array of `uint8`.
     pub(crate) fn read(name: &str, value: &Bound<'py, PyAny>) -> PyResult<Self> {
-        let array = untyped::<R>(name, value)?;
-        Array::of(name, array)?.ok_or_else(|| {
-            let hint = "uint8; for floats in [0, 1] give (255 * array).round().astype(np.uint8)";
-            wrong_dtype(name, array, hint)
-        })
+        let array = untyped(name, value, R::SHAPE)?;
+        Array::of(name, array)?.ok_or_else(|| wrong_dtype(name, array, BYTES))
     }
 }
 
 impl Picture<'_> {
     /// The picture, which can be read without the GIL.
     pub(crate) fn view(&self) -> PyResult<FrameView<'_>> {
-        view(self.shape(), self.pixels()?)
+        let [height, width] = self.shape();
+        FrameView::new(width, height, self.pixels()?).map_err(|error| value_error("frame", &error))
     }
 }
 
@@ -60,9 +61,11 @@ impl<T: Element> Array<'_, T, Ix3> {
 
 impl Pictures<'_> {
     /// The pictures in order, which can be read without the GIL.
-    pub(crate) fn views(&self) -> PyResult<Vec<FrameView<'_>>> {
+    pub(crate) fn views(&self) -> PyResult<impl Iterator<Item = FrameView<'_>>> {
         let [height, width] = self.shape();
-        self.pixels()?.chunks_exact(height * width).map(|pixels| view([height, width], pixels)).collect()
+        // The shape has been checked, so each chunk is a picture.
+        let view = move |pixels| FrameView::new(width, height, pixels).ok();
+        Ok(self.pixels()?.chunks_exact(height * width).filter_map(view))
     }
 }
 
@@ -108,7 +111,7 @@ pub(crate) enum Image<'py, R: Rank> {
 impl<'py, R: Rank> Image<'py, R> {
     /// Takes the argument `name`, which must be an array of `uint8`, `float32` or `float64`.
     pub(crate) fn read(name: &str, value: &Bound<'py, PyAny>) -> PyResult<Self> {
-        let array = untyped::<R>(name, value)?;
+        let array = untyped(name, value, R::SHAPE)?;
         if let Some(bytes) = Array::of(name, array)? {
             Ok(Image::Bytes(bytes))
         } else if let Some(floats) = Array::of(name, array)? {
@@ -121,25 +124,30 @@ impl<'py, R: Rank> Image<'py, R> {
     }
 }
 
-fn view([height, width]: [usize; 2], pixels: &[u8]) -> PyResult<FrameView<'_>> {
-    FrameView::new(width, height, pixels).map_err(|error| value_error("frame", &error))
-}
-
 /// Which pixels the argument `mask` says count: an array of `uint8` or `bool`.
 pub(crate) fn mask(value: &Bound<'_, PyAny>) -> PyResult<Frame> {
-    let Some(bools) = Array::<bool, Ix2>::of("mask", untyped::<Ix2>("mask", value)?)? else {
-        return Ok(Picture::read("mask", value)?.view()?.to_frame());
+    let array = untyped("mask", value, Ix2::SHAPE)?;
+    if let Some(bytes) = Picture::of("mask", array)? {
+        return Ok(bytes.view()?.to_frame());
+    }
+    let Some(bools) = Array::<bool, Ix2>::of("mask", array)? else {
+        return Err(wrong_dtype("mask", array, "uint8 or bool; for floats give array > 0"));
     };
     let [height, width] = bools.shape();
     let pixels = bools.pixels()?.iter().map(|&counts| u8::from(counts)).collect();
     Frame::from_vec(width, height, pixels).map_err(|error| value_error("mask", &error))
 }
 
-/// The array itself, of any type. One with masked values is refused: what the mask hides would count.
-fn untyped<'a, 'py, R: Rank>(name: &str, value: &'a Bound<'py, PyAny>) -> PyResult<&'a Bound<'py, PyUntypedArray>> {
+/// The array itself, of any type; `shape` says what it should be like. One with masked values is refused: what the mask
+/// hides would count.
+pub(crate) fn untyped<'a, 'py>(
+    name: &str,
+    value: &'a Bound<'py, PyAny>,
+    shape: &str,
+) -> PyResult<&'a Bound<'py, PyUntypedArray>> {
     let array = value.cast::<PyUntypedArray>().map_err(|_| {
         let got = value.get_type();
-        PyTypeError::new_err(format!("{name}: got {}, expected a NumPy array of shape {}", name_of(&got), R::SHAPE))
+        PyTypeError::new_err(format!("{name}: got {}, expected a NumPy array of shape {shape}", name_of(&got)))
     })?;
     if !value.is_exact_instance_of::<PyUntypedArray>() {
         static MASKED: PyOnceLock<Py<PyType>> = PyOnceLock::new();
@@ -155,7 +163,7 @@ fn name_of(of: &Bound<'_, PyType>) -> String {
     of.name().map_or_else(|_| of.to_string(), |name| name.to_string())
 }
 
-fn wrong_dtype(name: &str, array: &Bound<'_, PyUntypedArray>, expected: &str) -> PyErr {
+pub(crate) fn wrong_dtype(name: &str, array: &Bound<'_, PyUntypedArray>, expected: &str) -> PyErr {
     PyTypeError::new_err(format!("{name}: got an array of {}, expected {expected}", array.dtype()))
 }
 
@@ -164,8 +172,18 @@ fn check_shape<R: Rank>(name: &str, shape: &[usize]) -> PyResult<()> {
     if Some(shape.len()) == R::NDIM && shape[shape.len() - 2..].iter().all(is_side) {
         return Ok(());
     }
-    let hint = if matches!(shape, [_, _, 3 | 4]) { "; turn colours to grey first, with prf.to_grey" } else { "" };
+    let has_colours = Some(shape.len()) == R::NDIM.map(|ndim| ndim + 1);
+    let hint = match shape.last() {
+        Some(1) if has_colours => "; give array[..., 0]",
+        Some(3 | 4) if has_colours => "; turn colours to grey first, with prf.to_grey",
+        _ => "",
+    };
+    Err(wrong_shape(name, shape, R::SHAPE, hint))
+}
+
+/// What to say of an array that has not the shape it should have.
+pub(crate) fn wrong_shape(name: &str, shape: &[usize], expected: &str, hint: &str) -> PyErr {
     let got = shape.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
-    let expected = format!("{} with sides of 1 to {MAX_SIDE}", R::SHAPE);
-    Err(PyValueError::new_err(format!("{name}: got shape ({got}), expected {expected}{hint}")))
+    let message = format!("{name}: got shape ({got}), expected {expected} with sides of 1 to {MAX_SIDE}{hint}");
+    PyValueError::new_err(message)
 }

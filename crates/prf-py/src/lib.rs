@@ -5,6 +5,7 @@
 
 mod arg;
 mod batch;
+mod choice;
 mod command;
 mod crop;
 mod ema;

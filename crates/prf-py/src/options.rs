@@ -4,10 +4,10 @@ use prf_core::{CellSize, DeltaSchedule, HogParams, MotionParams, RewardParams};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use serde::de::value::Error as ChoiceError;
-use serde::de::{DeserializeOwned, IntoDeserializer};
+use serde::de::DeserializeOwned;
 
 use crate::arg::{Expected, extract};
+use crate::choice::choice;
 use crate::error::value_error;
 
 /// The keyword arguments of a call that nobody has asked for yet.
@@ -42,11 +42,10 @@ impl<'py> Options<'py> {
         value.map(|value| extract(name, &value)).transpose()
     }
 
-    /// One of several names, which are the same as in configuration files.
+    /// The argument `name`, which is one of several names.
     pub(crate) fn choice<T: DeserializeOwned>(&self, name: &str) -> PyResult<Option<T>> {
-        let Some(choice) = self.get::<String>(name)? else { return Ok(None) };
-        let read = T::deserialize(choice.into_deserializer());
-        read.map(Some).map_err(|error: ChoiceError| PyValueError::new_err(format!("{name}: {error}")))
+        let Some(value) = self.raw(name)? else { return Ok(None) };
+        choice(value.py(), name, &extract::<String>(name, &value)?).map(Some)
     }
 
     /// What HOGs are told, valid. `cell` is the side where none is given.

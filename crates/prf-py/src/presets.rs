@@ -7,6 +7,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyString;
 
+use crate::choice;
 use crate::error::value_error;
 use crate::goal::GoalParts;
 
@@ -34,8 +35,8 @@ impl Picture {
 const PRESETS: &[Preset] = include!(concat!(env!("OUT_DIR"), "/presets.rs"));
 
 impl Preset {
-    pub(crate) fn find(name: &str) -> PyResult<&'static Preset> {
-        PRESETS.iter().find(|preset| preset.name == name).ok_or_else(|| unknown(name, |_| true))
+    pub(crate) fn find(py: Python<'_>, name: &str) -> PyResult<&'static Preset> {
+        PRESETS.iter().find(|preset| preset.name == name).ok_or_else(|| unknown(py, name, |_| true))
     }
 
     pub(crate) fn config(&self) -> PyResult<TaskConfig> {
@@ -43,10 +44,8 @@ impl Preset {
     }
 }
 
-fn unknown(name: &str, fits: fn(&Preset) -> bool) -> PyErr {
-    let names: Vec<_> =
-        PRESETS.iter().filter(|preset| fits(preset)).map(|preset| format!("{:?}", preset.name)).collect();
-    PyValueError::new_err(format!("name: got {name:?}, expected {}", names.join(", ")))
+fn unknown(py: Python<'_>, name: &str, fits: fn(&Preset) -> bool) -> PyErr {
+    choice::unknown(py, "name", name, PRESETS.iter().filter(|preset| fits(preset)).map(|preset| preset.name))
 }
 
 /// The goal of one of the worlds, with the settings that its agents were trained with.
@@ -87,7 +86,7 @@ pub(crate) fn preset_goal<'py>(
     let (py, name) = (name.py(), name.to_str()?);
     let preset = PRESETS.iter().find(|preset| preset.name == name);
     let Some((preset, picture)) = preset.and_then(|preset| Some((preset, preset.goal.as_ref()?))) else {
-        return Err(unknown(name, |preset| preset.goal.is_some()));
+        return Err(unknown(py, name, |preset| preset.goal.is_some()));
     };
     let reward = preset.config()?.reward;
     let descriptor = reward.descriptor_params().unwrap_or_default();
@@ -102,6 +101,6 @@ pub(crate) fn preset_goal<'py>(
 
 /// The steps after which a preset's episodes are truncated.
 #[pyfunction]
-pub(crate) fn preset_limit_steps(name: &str) -> PyResult<u32> {
-    Ok(Preset::find(name)?.config()?.env.limit_steps)
+pub(crate) fn preset_limit_steps(py: Python<'_>, name: &str) -> PyResult<u32> {
+    Ok(Preset::find(py, name)?.config()?.env.limit_steps)
 }

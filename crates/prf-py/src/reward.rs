@@ -214,9 +214,9 @@ fn scores<'py>(
     let threads = Threads::read(&options)?;
     options.finish()?;
     let (goal, frames) = (Picture::read("goal", goal)?, Pictures::read("frames", frames)?);
-    let (goal, views, [height, width]) = (goal.view()?, frames.views()?, frames.shape());
+    let (goal, mut views, [height, width]) = (goal.view()?, frames.views()?, frames.shape());
     let descriptor = frames.py().detach(|| {
-        views.into_iter().try_for_each(|frame| check_picture(&params.hog, frame))?;
+        views.try_for_each(|frame| check_picture(&params.hog, frame))?;
         descriptor(goal, params)
     })?;
     batch::each("frames", &frames, threads, descriptor, &[], |descriptor, pixels, values| {

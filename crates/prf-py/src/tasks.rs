@@ -10,10 +10,9 @@ use prf_envs::{Command, Error, Results, RewardConfig, Spec, StateConfig, TaskCon
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
-use serde::Deserialize;
-use serde::de::IntoDeserializer;
-use serde::de::value::Error as ChoiceError;
 
+use crate::batch::Threads;
+use crate::choice::choice;
 use crate::error::value_error;
 use crate::exclusive::Exclusive;
 use crate::goal::{GoalParts, goal_parts};
@@ -28,7 +27,7 @@ const MAX_TASKS: usize = 4096;
 ///
 /// ``num_envs`` tasks in the world of a preset. Without ``goal`` the reward is the world's own; without ``state`` the
 /// agent sees what the preset's does; without ``max_episode_steps`` episodes have no limit; without ``threads`` there are
-/// as many as pay off.
+/// as many as pay off, up to the number of cores.
 ///
 /// Results are written into C-contiguous arrays of the caller's. Other threads run meanwhile; where another one is just
 /// using the same tasks, methods raise RuntimeError rather than wait.
@@ -62,7 +61,7 @@ impl Tasks {
         signature = (preset, **options),
         text_signature = "(preset, *, num_envs=1, goal=None, state=None, max_episode_steps=None, threads=None)"
     )]
-    fn new(preset: String, options: Option<Bound<'_, PyDict>>) -> PyResult<Tasks> {
+    fn new(py: Python<'_>, preset: String, options: Option<Bound<'_, PyDict>>) -> PyResult<Tasks> {
         let options = Options::new("Tasks", options);
         let recipe = Recipe {
             preset,
@@ -70,11 +69,11 @@ impl Tasks {
             goal: options.raw("goal")?.filter(|goal| !goal.is_none()).map(Bound::unbind),
             state: options.get_optional("state")?,
             max_episode_steps: options.get_optional("max_episode_steps")?,
-            threads: options.get_optional("threads")?,
+            threads: Threads::read(&options)?.most(),
         };
         options.finish()?;
         let inner = Exclusive::new(Inner {
-            tasks: recipe.tasks()?,
+            tasks: recipe.tasks(py)?,
             commands: Vec::with_capacity(recipe.num_envs),
             canvas: Frame::new(1, 1),
         });
@@ -276,15 +275,16 @@ impl Inner {
 }
 
 impl Recipe {
-    fn tasks(&self) -> PyResult<VectorTask> {
+    fn tasks(&self, py: Python<'_>) -> PyResult<VectorTask> {
         if !(1..=MAX_TASKS).contains(&self.num_envs) {
             return Err(out_of_range("num_envs", self.num_envs, 1, MAX_TASKS));
         }
-        let goal = Python::attach(|py| self.goal.as_ref().map(|goal| goal_parts(goal.bind(py))).transpose())?;
-        let config = self.config(goal.as_ref())?;
+        let goal = self.goal.as_ref().map(|goal| goal_parts(goal.bind(py))).transpose()?;
+        let config = self.config(py, goal.as_ref())?;
         let picture = goal.as_ref().map(|parts| &parts.goal);
+        let make = |count| py.detach(|| VectorTask::new(&config, picture, count)).map_err(|error| task_error(&error));
         // One of them tells their size, before there is more than fits into memory.
-        let one = VectorTask::new(&config, picture, 1).map_err(|error| task_error(&error))?;
+        let one = make(1)?;
         if let Some(GoalParts { goal, params, .. }) = &goal {
             let goal = [goal.picture.height(), goal.picture.width()];
             let frame = [one.spec().height, one.spec().width];
@@ -292,7 +292,7 @@ impl Recipe {
         }
         let tasks = match self.num_envs {
             1 => one,
-            count => VectorTask::new(&config, picture, count).map_err(|error| task_error(&error))?,
+            count => make(count)?,
         };
         Ok(match self.threads {
             Some(threads) => tasks.with_threads(threads),
@@ -300,13 +300,11 @@ impl Recipe {
         })
     }
 
-    fn config(&self, goal: Option<&GoalParts>) -> PyResult<TaskConfig> {
-        let mut config = Preset::find(&self.preset)?.config()?;
+    fn config(&self, py: Python<'_>, goal: Option<&GoalParts>) -> PyResult<TaskConfig> {
+        let mut config = Preset::find(py, &self.preset)?.config()?;
         config.reward = goal.map_or_else(RewardConfig::variable, reward_config);
         if let Some(state) = &self.state {
-            let kind = Deserialize::deserialize(state.as_str().into_deserializer());
-            let kind = kind.map_err(|error: ChoiceError| PyValueError::new_err(format!("state: {error}")))?;
-            config.state = StateConfig { kind, ..config.state };
+            config.state = StateConfig { kind: choice(py, "state", state)?, ..config.state };
         }
         config.env.limit_steps = match self.max_episode_steps {
             None => u32::MAX,

@@ -185,6 +185,12 @@ def test_colours_are_told_what_to_do(shape: tuple[int, ...], taker: str) -> None
 
 
 @all_takers
+def test_an_axis_of_one_value_is_told_what_to_do(taker: str) -> None:
+    if taker != "MotionGoal":
+        refuse(lambda: ANY[taker][1](IMAGE[..., np.newaxis]), ValueError, "got shape (24, 36, 1)", "give array[..., 0]")
+
+
+@all_takers
 def test_a_picture_that_takes_no_memory_itself_is_refused_when_huge(taker: str) -> None:
     huge = np.broadcast_to(np.uint8(9), (1 << 30, 1 << 20))
     refuse(lambda: ANY[taker][1](huge), ValueError, "got shape (1073741824, 1048576)")

@@ -64,6 +64,15 @@ def test_a_copy_goes_on_by_itself(duplicate: str) -> None:
         state.update(FRAMES[count])
 
 
+def test_a_state_may_be_an_array_of_any_order() -> None:
+    state = prf.EmaState()
+    for frame in FRAMES[:3]:
+        state.update(frame)
+    other = prf.EmaState()
+    other.__setstate__(np.asfortranarray(state.values))
+    np.testing.assert_array_equal(other.values, state.values)
+
+
 def test_it_says_what_it_is() -> None:
     assert repr(prf.EmaState()) == "EmaState(decay=0.7)"
     assert prf.EmaState(decay=float(np.float32(0.25))).decay == 0.25

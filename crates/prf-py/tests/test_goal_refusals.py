@@ -53,7 +53,7 @@ def test_what_is_no_frame_is_refused(name: str, frame: Any, error: type[Exceptio
 def test_a_window_larger_than_the_frame_is_refused() -> None:
     goal = prf.WindowGoal(PART)
     message = "a template of 18x26 px doesn't fit into a frame of 84x25 px"
-    for call in (goal.reward, goal.score, goal.explain):
+    for call in (goal.reset, goal.reward, goal.score, goal.explain):
         refuse(lambda: call(FRAMES[0][:25]), ValueError, f"frame: {message}")
     refuse(lambda: goal.rewards(FRAMES[:, :25]), ValueError, f"frames: {message}")
 
@@ -110,7 +110,7 @@ def test_options_that_do_not_fit_the_goal_are_refused() -> None:
     refuse(
         lambda: window(PART, mask=PART * 0), ValueError, "mask: got only zeros, expected a pixel that counts"
     )
-    refuse(lambda: window(PART, mask=PART / 255), TypeError, "mask: got an array of float64, expected uint8")
+    refuse(lambda: window(PART, mask=PART / 255), TypeError, "mask: got an array of float64, expected uint8 or bool")
     refuse(
         lambda: window(PART, mask=3),
         TypeError,
@@ -120,7 +120,7 @@ def test_options_that_do_not_fit_the_goal_are_refused() -> None:
     refuse(
         lambda: window(PART, method="best"),
         ValueError,
-        "method: unknown variant `best`, expected `ccorr-normed`",
+        "method: got 'best', expected one of 'ccorr-normed', 'ccoeff-normed'",
     )
 
 

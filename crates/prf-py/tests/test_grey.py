@@ -7,6 +7,7 @@ import pytest
 from numpy.typing import NDArray
 from PIL import Image
 from pictures import natural
+from untyped import numpy_ma
 
 import prf
 
@@ -54,6 +55,8 @@ def test_pictures_are_brought_to_a_size_as_by_pillow(size: tuple[int, int]) -> N
     got = prf.to_grey(grey, size=size)
     expected = Image.fromarray(grey).resize((size[1], size[0]), Image.Resampling.BILINEAR)
     assert np.abs(got.astype(int) - np.asarray(expected).astype(int)).max() <= 1  # Pillow rounds its weights
+    if size[0] == size[1]:
+        np.testing.assert_array_equal(prf.to_grey(grey, size=size[0]), got)
     flat = prf.to_grey(np.full((9, 13, 3), 77, np.uint8), size=size)
     np.testing.assert_array_equal(flat, np.full(size, 77))
 
@@ -62,19 +65,23 @@ def test_pictures_are_brought_to_a_size_as_by_pillow(size: tuple[int, int]) -> N
     ("arguments", "error", "message"),
     [
         ({"image": None}, TypeError, "image: got NoneType, expected a NumPy array"),
-        ({"image": np.zeros((9, 9))}, TypeError, "image: got an array of float64, expected uint8"),
-        ({"image": np.zeros((9, 9, 3))}, TypeError, "image: got an array of float64, expected uint8"),
+        ({"image": np.zeros((9, 9))}, TypeError, "image: got an array of float64, expected uint8; for floats"),
+        ({"image": np.zeros((9, 9, 3))}, TypeError, "image: got an array of float64, expected uint8; for floats"),
+        ({"image": numpy_ma.zeros((9, 9, 3), np.uint8)}, TypeError, "image: got a masked array, expected a plain one"),
+        ({"image": numpy_ma.zeros((9, 9), np.uint8)}, TypeError, "image: got a masked array, expected a plain one"),
         ({"image": np.zeros((9, 9, 2), np.uint8)}, ValueError, r"image: got shape \(9, 9, 2\), expected \(height, width\),"),
         ({"image": np.zeros((9, 9, 5), np.uint8)}, ValueError, r"image: got shape \(9, 9, 5\), expected"),
         ({"image": np.zeros((0, 9, 3), np.uint8)}, ValueError, r"image: got shape \(0, 9, 3\), expected"),
         ({"image": np.zeros((16385, 1, 3), np.uint8)}, ValueError, r"image: got shape \(16385, 1, 3\), expected"),
         ({"image": np.zeros((2, 9, 9, 3), np.uint8)}, ValueError, r"image: got shape \(2, 9, 9, 3\), expected"),
         ({"image": np.zeros(9, np.uint8)}, ValueError, r"image: got shape \(9\), expected"),
-        ({"size": (0, 9)}, ValueError, r"size: got \(0, 9\), expected \(height, width\) of 1 to 16384 pixels"),
+        ({"size": (0, 9)}, ValueError, r"size: got \(0, 9\), expected a side or \(height, width\) of 1 to 16384 pixels"),
         ({"size": (9, -1)}, ValueError, r"size: got \(9, -1\), expected"),
         ({"size": (9, 16385)}, ValueError, r"size: got \(9, 16385\), expected"),
         ({"size": (9, 2**70)}, ValueError, r"size: got \(9, 1180591620717411303424\), expected"),
-        ({"size": 84}, TypeError, r"size: got 84, expected \(height, width\)"),
+        ({"size": 0}, ValueError, "size: got 0, expected a side"),
+        ({"size": 2**70}, ValueError, "size: got 1180591620717411303424, expected a side"),
+        ({"size": 84.0}, TypeError, "size: got 84.0, expected a side"),
         ({"size": (9.0, 9)}, TypeError, r"size: got \(9.0, 9\), expected"),
         ({"scale": 2}, TypeError, "unexpected keyword argument 'scale'"),
     ],

@@ -95,7 +95,7 @@ def test_what_can_not_be_matched_is_refused() -> None:
     refuse(
         lambda: call(IMAGE, small, method="TM_CCOEFF_NORMED"),
         ValueError,
-        "method: unknown variant",
+        "method: got 'TM_CCOEFF_NORMED', expected one of",
         "ccoeff-normed",
     )
     refuse(lambda: call(IMAGE, small, method=5), TypeError, "method: got int, expected a str")

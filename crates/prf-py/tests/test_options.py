@@ -45,7 +45,7 @@ TOO_MANY = 10**30
         ({"block_cells": -2}, "block_cells: got -2, expected an int of at least 1"),
         (
             {"norm": "L2"},
-            "norm: unknown variant `L2`, expected one of `none`, `l1`, `l1-sqrt`, `l2`, `l2-hys`",
+            "norm: got 'L2', expected one of 'none', 'l1', 'l1-sqrt', 'l2', 'l2-hys'",
         ),
         ({"cell_px": 25}, "a picture of 36x24 px is too small for 1x1 cells of 25 px"),
         ({"cell_px": 8, "block_cells": 4}, "a picture of 36x24 px is too small for 4x4 cells of 8 px"),
@@ -92,7 +92,7 @@ def test_scales_are_named() -> None:
     scale: Any = "blocks"
     for function in COMPARING:
         with pytest.raises(
-            ValueError, match="scale: unknown variant `blocks`, expected one of `none`, `sqrt-blocks`"
+            ValueError, match="scale: got 'blocks', expected one of 'none', 'sqrt-blocks'"
         ):
             function(scale=scale)
 

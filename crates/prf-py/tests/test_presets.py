@@ -105,7 +105,7 @@ def test_another_picture_keeps_the_settings() -> None:
 
 def test_other_names_are_refused() -> None:
     for name in ("pong", "breakout-vrf", ""):
-        with pytest.raises(ValueError, match=f'name: got "{name}", expected "breakout", "flappy", "kobian-happy-hprf"'):
+        with pytest.raises(ValueError, match=f"name: got '{name}', expected one of 'breakout', 'flappy', 'kobian-happy-hprf'"):
             prf.preset_goal(name)
     with pytest.raises(FileNotFoundError):
         prf.preset_goal("flappy", "nowhere.png")

@@ -109,3 +109,31 @@ def test_a_pool_of_processes_scores_frames() -> None:
     with multiprocessing.get_context("spawn").Pool(2) as pool:
         got = pool.map_async(goal.reward, FRAMES).get(timeout=120)
     np.testing.assert_array_equal(np.array(got, np.float32), goal.rewards(FRAMES))
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        "prf.DirectGoal(goal).rewards(frames, threads=1)",
+        "prf.MotionGoal(goal).rewards(frames)",
+        "prf.reward_batch(goal, frames, threads=1)",
+    ],
+)
+def test_more_frames_than_memory_do_not_end_the_process(call: str) -> None:
+    run(
+        f"""
+        import resource
+        import numpy as np
+        import prf
+
+        frames, goal = np.zeros((2**27, 1, 1), np.uint8), np.full((9, 9), 7, np.uint8)
+        in_use = int(open("/proc/self/statm").read().split()[0]) * resource.getpagesize()
+        resource.setrlimit(resource.RLIMIT_AS, (in_use + 2**28, in_use + 2**28))
+        try:
+            {call}
+        except MemoryError:
+            pass
+        else:
+            raise SystemExit("there was room for 512 MiB of rewards")
+        """
+    )

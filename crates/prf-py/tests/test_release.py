@@ -3,9 +3,12 @@
 import re
 import subprocess
 import sys
+from importlib.metadata import packages_distributions, requires
 from pathlib import Path
 from typing import Any
 
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
 from ruamel.yaml import YAML
 
 PACKAGE = Path(__file__).parent.parent
@@ -40,7 +43,42 @@ def test_every_wheel_is_tried_before_it_is_published() -> None:
     assert [platform["name"] for platform in tried["platform"]] == built
     assert tried["python"][0] == the_one('^requires-python = ">=(.*)"$', PACKAGE / "pyproject.toml")
     assert jobs()["publish"]["needs"] == "try"
-    [tests] = [step["run"] for step in jobs()["try"]["steps"] if step.get("name") == "Tests"]
-    named = re.findall(r"tests/\S+\.py", tests)
+
+
+def test_only_a_pushed_tag_is_published() -> None:
+    condition = jobs()["publish"]["if"]
+    assert "github.event_name == 'push'" in condition and "github.ref_type == 'tag'" in condition
+
+
+def test_the_tests_that_try_a_wheel_need_no_more_than_is_installed_for_them() -> None:
+    [run] = [step["run"] for step in jobs()["try"]["steps"] if step.get("name") == "Tests"]
+    [installed] = re.findall(r"--constraint \S+ (.*)$", run, re.MULTILINE)
+    named = re.findall(r"tests/\S+\.py", run)
     assert named
-    assert all((PACKAGE / name).is_file() for name in named)
+    there = with_what_they_need(["prf-py", *installed.split()])
+    missing = {
+        module
+        for module, names in packages_distributions().items()
+        if not there.intersection(map(canonicalize_name, names))
+    }
+    assert "pygame" in missing
+    code = (
+        "import sys\n"
+        f"sys.modules.update(dict.fromkeys({sorted(missing - {'_pytest', 'py'})!r}))\n"
+        "import pytest\n"
+        f"sys.exit(pytest.main(['--collect-only', '-q', '-p', 'no:cacheprovider', *{named!r}]))\n"
+    )
+    ended = subprocess.run([sys.executable, "-c", code], cwd=PACKAGE, capture_output=True, text=True)
+    assert ended.returncode == 0, ended.stdout + ended.stderr
+
+
+def with_what_they_need(names: list[str]) -> set[str]:
+    """These distributions and those that they require, without extras."""
+    found: set[str] = set()
+    while names:
+        name = canonicalize_name(names.pop())
+        if name not in found:
+            found.add(name)
+            needed = map(Requirement, requires(name) or [])
+            names += [each.name for each in needed if each.marker is None or each.marker.evaluate({"extra": ""})]
+    return found

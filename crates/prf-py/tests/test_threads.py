@@ -13,6 +13,7 @@ import pytest
 from pictures import Bytes, moving, natural
 
 import prf
+from prf._native import Tasks
 
 GOAL = natural(84, 84)
 FRAMES = moving(12, 84, 84)
@@ -167,7 +168,10 @@ KERNELS: dict[str, Callable[[], object]] = {
     "MotionGoal.reward": lambda: MOTION.reward(LARGE),
     "MotionGoal.rewards": lambda: MOTION.rewards(STACK),
     "MotionGoal.reset": lambda: MOTION.reset(LARGE),
+    "DirectGoal": lambda: prf.DirectGoal(LARGE),
+    "WindowGoal": lambda: prf.WindowGoal(LARGE),
     "MotionGoal": lambda: prf.MotionGoal(FRAMES),
+    "Tasks": lambda: Tasks("breakout", num_envs=8, goal=DIRECT),
     "MotionTemplate": lambda: TEMPLATE.update(LARGE),
     "EmaState": lambda: STATE.update(LARGE),
 }

@@ -173,6 +173,18 @@ def test_frames_may_be_brought_to_a_size() -> None:
         assert reward == goal.reward(prf.to_grey(observation, size=shape))
 
 
+def test_two_wrappers_keep_the_reward_of_the_environment_itself() -> None:
+    goals = goal_of("direct"), goal_of("window")
+    env = PerceptualReward(PerceptualReward(Walk("rgb_array"), goals[0]), goals[1])
+    env.reset(seed=1)
+    observation, reward, *_, info = env.step(np.int64(1))
+    assert (reward, info["original_reward"]) == (goals[1].reward(prf.to_grey(observation)), -1.5)
+    together = SyncVectorEnv([lambda: Walk("rgb_array")] * 2)
+    vector = VectorPerceptualReward(VectorPerceptualReward(together, goals[0]), goals[1])
+    vector.reset(seed=1)
+    assert vector.step(np.array([1, 1]))[4]["original_reward"].tolist() == [-1.5, -1.5]
+
+
 def test_the_goal_that_was_given_is_left_alone() -> None:
     goal = goal_of("motion")
     state = goal.__getstate__()
@@ -239,6 +251,21 @@ def test_an_environment_s_spec_makes_it_again() -> None:
             "descriptor: got 'direct' with a WindowGoal",
         ),
         (lambda: PerceptualReward(Walk("rgb_array"), natural(9, 9), size=0), ValueError, "size: got 0, expected"),
+        (
+            lambda: PerceptualReward(Walk("rgb_array"), natural(9, 21), descriptor="window", size=(30, 20)),
+            ValueError,
+            "goal: got a window of 21x9 px, expected one that fits into frames of 20x30 px",
+        ),
+        (
+            lambda: PerceptualReward(Walk(), natural(25, 9), descriptor="window", source="observation"),
+            ValueError,
+            "goal: got a window of 9x25 px, expected one that fits into frames of 24x24 px",
+        ),
+        (
+            lambda: VectorPerceptualReward(SyncVectorEnv([Walk]), natural(25, 9), descriptor="window", source="observation"),
+            ValueError,
+            "goal: got a window of 9x25 px",
+        ),
         (lambda: PerceptualReward(Walk("rgb_array"), "nowhere.png"), FileNotFoundError, "nowhere.png"),
         (lambda: PerceptualReward(Walk("rgb_array"), None), TypeError, "goal: got NoneType, expected"),  # type: ignore[arg-type]
         (lambda: PerceptualReward("Walk", natural(9, 9)), TypeError, "env|Env|render_mode"),  # type: ignore[arg-type]
@@ -281,7 +308,6 @@ def test_frames_that_are_no_pictures_are_refused() -> None:
         odd.frame = frame
         with pytest.raises(error, match=message):
             env.reset()
-            env.step(np.int64(0))
     vector = VectorPerceptualReward(SyncVectorEnv([lambda: Odd("rgb_array")]), natural(30, 30))
     with pytest.raises(TypeError, match=r"render\(\): got NoneType"):
         vector.reset()

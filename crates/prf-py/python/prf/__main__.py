@@ -1,6 +1,7 @@
 """The command line of PRF: ``python -m prf score goal.png frames/`` and the like.
 
-It is the command ``prf`` in all but training, which needs libtorch.
+It is the command ``prf`` in all but training, which needs libtorch. The script that ``completions`` prints is for that
+command, which this package doesn't install.
 """
 
 import signal

@@ -57,12 +57,13 @@ impl DirectGoal {
                           scale='sqrt-blocks')"
     )]
     fn new(goal: &Bound<'_, PyAny>, options: Option<Bound<'_, PyDict>>) -> PyResult<PyClassInitializer<DirectGoal>> {
+        let py = goal.py();
         let options = Options::new("DirectGoal", options);
         let params = options.reward(DescriptorKind::Direct.paper_cell())?;
         options.finish()?;
         let goal = source::picture("goal", goal)?.into();
         let parts = GoalParts { goal, descriptor: DescriptorParams::Direct, params };
-        Ok(PyClassInitializer::from(Goal::new(parts)?).add_subclass(DirectGoal))
+        Ok(PyClassInitializer::from(Goal::new(py, parts)?).add_subclass(DirectGoal))
     }
 }
 
@@ -107,6 +108,7 @@ impl WindowGoal {
                           cell_px=None, block_cells=1, norm='l2', scale='sqrt-blocks')"
     )]
     fn new(goal: &Bound<'_, PyAny>, options: Option<Bound<'_, PyDict>>) -> PyResult<PyClassInitializer<WindowGoal>> {
+        let py = goal.py();
         let options = Options::new("WindowGoal", options);
         let mask = options.raw("mask")?.filter(|mask| !mask.is_none());
         let window = WindowParams { method: options.choice("method")?.unwrap_or_default() };
@@ -116,7 +118,7 @@ impl WindowGoal {
         let mask = mask.map(|mask| source::mask(&mask)).transpose()?;
         let goal = prf_core::Goal { picture, mask };
         let parts = GoalParts { goal, descriptor: DescriptorParams::Window(window), params };
-        Ok(PyClassInitializer::from(Goal::new(parts)?).add_subclass(WindowGoal))
+        Ok(PyClassInitializer::from(Goal::new(py, parts)?).add_subclass(WindowGoal))
     }
 
     /// (H, W) ndarray of uint8 or None: Which pixels of the goal count, those that are not 0 here.
@@ -198,13 +200,14 @@ impl MotionGoal {
                           norm='l2', scale='sqrt-blocks')"
     )]
     fn new(goal: &Bound<'_, PyAny>, options: Option<Bound<'_, PyDict>>) -> PyResult<PyClassInitializer<MotionGoal>> {
+        let py = goal.py();
         let options = Options::new("MotionGoal", options);
         let motion = options.motion()?;
         let params = options.reward(DescriptorKind::Motion.paper_cell())?;
         options.finish()?;
         let goal = source::motion(goal, motion)?.into();
         let parts = GoalParts { goal, descriptor: DescriptorParams::Motion(motion), params };
-        Ok(PyClassInitializer::from(Goal::new(parts)?).add_subclass(MotionGoal))
+        Ok(PyClassInitializer::from(Goal::new(py, parts)?).add_subclass(MotionGoal))
     }
 
     /// int: A pixel has moved when it differs by more than this from the frame before.

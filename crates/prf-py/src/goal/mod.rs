@@ -5,7 +5,7 @@ mod parts;
 mod source;
 mod watcher;
 
-use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, ToPyArray};
+use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, ToPyArray};
 use prf_core::{CellSize, DescriptorParams, Error, FrameView, Match, Score, TaskDescriptor, draw_explanation};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyTuple};
@@ -58,33 +58,36 @@ impl Goal {
     /// # Errors
     ///
     /// ValueError where the parts don't fit each other or ask for too much memory.
-    fn new(parts: GoalParts) -> PyResult<Goal> {
-        let picture = parts.goal.picture.view();
-        let shape = [picture.height(), picture.width()];
-        match parts.descriptor {
-            DescriptorParams::Window(_) => check_crops(&parts.params.hog, shape)?,
-            _ => check_picture(&parts.params.hog, picture)?,
-        }
-        let watcher = Watcher::new(&parts)?;
-        Ok(Goal { parts, watcher })
+    fn new(py: Python<'_>, parts: GoalParts) -> PyResult<Goal> {
+        py.detach(|| {
+            let picture = parts.goal.picture.view();
+            match parts.descriptor {
+                DescriptorParams::Window(_) => check_crops(&parts.params.hog, shape(picture))?,
+                _ => check_picture(&parts.params.hog, picture)?,
+            }
+            let watcher = Watcher::new(&parts)?;
+            Ok(Goal { parts, watcher })
+        })
     }
 
-    /// Refuses frames whose features would take too much memory.
-    fn check(&self, frames: &[FrameView<'_>]) -> PyResult<()> {
+    /// Refuses a frame, the argument `name`, whose features would take too much memory, or in which a window has no place.
+    fn check(&self, name: &str, frame: FrameView<'_>) -> PyResult<()> {
         let hog = &self.parts.params.hog;
         match self.parts.descriptor {
-            DescriptorParams::Direct => frames.iter().try_for_each(|frame| check_picture(hog, *frame)),
+            DescriptorParams::Direct => check_picture(hog, frame),
             // What is compared is no larger than the goal.
-            DescriptorParams::Window(_) => Ok(()),
-            DescriptorParams::Motion(_) => {
-                frames.iter().try_for_each(|frame| check_crops(hog, [frame.height(), frame.width()]))
+            DescriptorParams::Window(_) => {
+                let (template, frame) = (shape(self.parts.goal.picture.view()), shape(frame));
+                let fits = template[0] <= frame[0] && template[1] <= frame[1];
+                fits.then_some(()).ok_or_else(|| value_error(name, &Error::TemplateTooLarge { template, frame }))
             }
+            DescriptorParams::Motion(_) => check_crops(hog, shape(frame)),
         }
     }
 
     /// Scores one frame.
     fn observe(&self, py: Python<'_>, frame: FrameView<'_>) -> PyResult<(Score, Option<Match>)> {
-        self.check(&[frame])?;
+        self.check("frame", frame)?;
         let scored = self.watcher.with(py, &self.parts, |descriptor| {
             let score = descriptor.observe(frame)?;
             Ok((score, descriptor.explain(frame).matched))
@@ -102,6 +105,11 @@ impl Goal {
     }
 }
 
+/// `[height, width]`
+fn shape(picture: FrameView<'_>) -> [usize; 2] {
+    [picture.height(), picture.width()]
+}
+
 #[pymethods]
 impl Goal {
     /// Begins an episode: what was seen before no longer counts.
@@ -115,14 +123,14 @@ impl Goal {
     /// Raises
     /// ------
     /// TypeError, ValueError
-    ///     ``frame`` is no picture.
+    ///     ``frame`` is no picture, or smaller than the goal of a window goal.
     /// RuntimeError
     ///     Another thread is using this motion goal.
     #[pyo3(signature = (frame=None))]
     fn reset(&self, py: Python<'_>, frame: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
         let frame = frame.map(|frame| Picture::read("frame", frame)).transpose()?;
         let frame = frame.as_ref().map(Picture::view).transpose()?;
-        self.check(frame.as_slice())?;
+        frame.map_or(Ok(()), |frame| self.check("frame", frame))?;
         let passed = self.watcher.with(py, &self.parts, |descriptor| {
             descriptor.reset();
             frame.map_or(Ok(()), |frame| descriptor.pass(frame))
@@ -207,18 +215,22 @@ impl Goal {
         options.finish()?;
         let frames = Pictures::read("frames", frames)?;
         let (count, shape, pixels) = (frames.count(), frames.shape(), frames.pixels()?);
-        self.check(&frames.views()?)?;
+        let mut views = frames.views()?;
+        py.detach(|| views.try_for_each(|frame| self.check("frames", frame)))?;
         let threads = threads.count(count, shape);
-        let rewards = self.watcher.with_many(py, &self.parts, threads, |descriptors| {
-            let mut rewards = vec![0.0; count];
-            batch::run(descriptors, count, pixels, &mut rewards, |descriptor, pixels, reward| {
+        let rewards = batch::empty(py, &[count])?;
+        let mut writing = rewards.try_readwrite()?;
+        let values = writing.as_slice_mut()?;
+        let scored = self.watcher.with_many(py, &self.parts, threads, |descriptors| {
+            batch::run(descriptors, count, pixels, values, |descriptor, pixels, reward| {
                 let frame = FrameView::new(shape[1], shape[0], pixels)?;
                 reward[0] = descriptor.observe(frame)?.reward;
                 Ok::<(), Error>(())
             })
-            .map(|()| rewards)
         })?;
-        Ok(rewards.map_err(|(_, error)| value_error("frames", &error))?.into_pyarray(py))
+        scored.map_err(|(_, error)| value_error("frames", &error))?;
+        drop(writing);
+        Ok(rewards)
     }
 
     /// Draws where the score of a frame comes from, and leaves the episode as it is.
@@ -245,13 +257,12 @@ impl Goal {
         let py = frame.py();
         let frame = Picture::read("frame", frame)?;
         let frame = frame.view()?;
-        self.check(&[frame])?;
-        let mut descriptor = self.descriptor()?;
         let picture = py.detach(|| {
-            descriptor.observe(frame)?;
-            Ok::<_, Error>(draw_explanation(&descriptor.explain(frame), ""))
-        });
-        let picture = picture.map_err(|error| value_error("frame", &error))?;
+            self.check("frame", frame)?;
+            let mut descriptor = self.descriptor()?;
+            descriptor.observe(frame).map_err(|error| value_error("frame", &error))?;
+            Ok::<_, PyErr>(draw_explanation(&descriptor.explain(frame), ""))
+        })?;
         picture.as_rgb().to_pyarray(py).reshape([picture.height(), picture.width(), 3])
     }
 

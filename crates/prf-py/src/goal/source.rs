@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use numpy::{PyUntypedArray, PyUntypedArrayMethods};
 use prf_core::io::{self, FrameSource, MotionSequence};
 use prf_core::{Error, Frame, MotionParams};
-use pyo3::exceptions::{PyTypeError, PyUserWarning};
+use pyo3::exceptions::{PyTypeError, PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyString;
 
@@ -70,7 +70,12 @@ fn path(name: &str, value: &Bound<'_, PyAny>, shape: &str) -> PyResult<Option<Pa
         return Ok(None);
     }
     if value.is_instance_of::<PyString>() || value.hasattr("__fspath__")? {
-        return value.extract().map(Some);
+        let path: PathBuf = value.extract()?;
+        if path.as_os_str().as_encoded_bytes().contains(&0) {
+            let message = format!("{name}: got {}, expected a path without null characters", value.repr()?);
+            return Err(PyValueError::new_err(message));
+        }
+        return Ok(Some(path));
     }
     let got = value.get_type().name()?;
     let expected = format!("a NumPy array of shape {shape} or the path of a file as str or os.PathLike");

@@ -39,12 +39,12 @@ impl Watcher {
         work: impl FnOnce(&mut dyn TaskDescriptor) -> R + Send,
     ) -> PyResult<R> {
         match self {
-            Watcher::Frames(idle) => {
+            Watcher::Frames(idle) => py.detach(|| {
                 let mut descriptor = take(idle, parts)?;
-                let result = py.detach(|| work(&mut *descriptor));
+                let result = work(&mut *descriptor);
                 give_back(idle, descriptor);
                 Ok(result)
-            }
+            }),
             Watcher::Episode(descriptor) => descriptor.with(py, |descriptor| work(&mut **descriptor)),
         }
     }
@@ -58,12 +58,12 @@ impl Watcher {
         work: impl FnOnce(&mut [Descriptor]) -> R + Send,
     ) -> PyResult<R> {
         match self {
-            Watcher::Frames(idle) => {
+            Watcher::Frames(idle) => py.detach(|| {
                 let mut descriptors = (0..count).map(|_| take(idle, parts)).collect::<PyResult<Vec<_>>>()?;
-                let result = py.detach(|| work(&mut descriptors));
+                let result = work(&mut descriptors);
                 descriptors.into_iter().for_each(|descriptor| give_back(idle, descriptor));
                 Ok(result)
-            }
+            }),
             Watcher::Episode(descriptor) => descriptor.with(py, |descriptor| work(slice::from_mut(descriptor))),
         }
     }

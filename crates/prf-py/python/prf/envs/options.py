@@ -44,6 +44,7 @@ def make_tasks(
     goal: GoalLike | None,
     state: State | None,
     max_episode_steps: int | None,
+    threads: int | None = None,
 ) -> Tasks:
     """The tasks behind an environment."""
     choice("world", world, tuple(PERCEPTUAL_PRESETS))
@@ -58,7 +59,7 @@ def make_tasks(
             message = f"goal: got {type(goal).__name__}, expected None, because reward is 'variable'"
             raise ValueError(message)
     return Tasks(
-        preset, num_envs=num_envs, goal=goal, state=state, max_episode_steps=max_episode_steps
+        preset, num_envs=num_envs, goal=goal, state=state, max_episode_steps=max_episode_steps, threads=threads
     )
 
 

@@ -5,7 +5,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 from gymnasium import logger, spaces
-from gymnasium.error import ClosedEnvironmentError
+from gymnasium.error import ClosedEnvironmentError, InvalidAction, ResetNeeded
 from gymnasium.utils import seeding
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
@@ -25,6 +25,7 @@ class VectorOptions(Options, total=False):
 
     num_envs: int
     autoreset_mode: AutoresetMode | str
+    threads: int | None
 
 
 class WorldVectorEnv(VectorEnv[Observations, Actions, NDArray[Any]]):
@@ -45,6 +46,9 @@ class WorldVectorEnv(VectorEnv[Observations, Actions, NDArray[Any]]):
         When the next episode begins: in the step after the last one, whose action is then ignored; in the same
         step, which hands the last observation over in ``infos["final_obs"]``; or with
         ``reset(options={"reset_mask": mask})``.
+    threads : int, 1 to 1024, optional
+        The most threads that step them; as many as there are cores, where that pays, if it isn't given. Results are
+        the same.
 
     Raises
     ------
@@ -70,6 +74,7 @@ class WorldVectorEnv(VectorEnv[Observations, Actions, NDArray[Any]]):
         render_mode: str | None = None,
         render_size: Size = 336,
         autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
+        threads: int | None = None,
     ) -> None:
         if render_mode is not None:
             choice("render_mode", render_mode, ("rgb_array",))
@@ -78,13 +83,15 @@ class WorldVectorEnv(VectorEnv[Observations, Actions, NDArray[Any]]):
         """Height and width of rendered frames."""
         self._mode = read_mode(autoreset_mode)
         self.metadata = {**self.metadata, "autoreset_mode": self._mode}
-        self._tasks = make_tasks(world, num_envs, reward, goal, state, max_episode_steps)
+        self._tasks = make_tasks(world, num_envs, reward, goal, state, max_episode_steps, threads)
         self.num_envs = num_envs
         self.single_observation_space = spaces.Box(0, 255, self._tasks.shape, np.uint8)
-        self.single_action_space = spaces.Discrete(len(self._tasks.actions))
+        self._actions = len(self._tasks.actions)
+        self.single_action_space = spaces.Discrete(self._actions)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.action_space = batch_space(self.single_action_space, num_envs)
         self._all = np.ones(num_envs, np.bool_)
+        self._have_begun = np.zeros(num_envs, np.bool_)
         self._random = [seeding.np_random(None) for _ in range(num_envs)]
         # The episodes that begin next, and the environments where one does so in the next step.
         self._seeds = np.zeros(num_envs, np.uint64)
@@ -124,14 +131,26 @@ class WorldVectorEnv(VectorEnv[Observations, Actions, NDArray[Any]]):
         ------
         TypeError, ValueError
             There is another number of seeds, or the mask is no such array.
+        gymnasium.error.Error
+            A seed is no integer, or negative. No episode begins then.
         gymnasium.error.ClosedEnvironmentError
             The environment is closed.
         """
         self._check_open()
         mask = self._read_mask(options)
-        for index, number in enumerate(self._read_seeds(seed)):
-            if mask[index]:
-                self._choose_episode(index, number)
+        seeds = self._read_seeds(seed)
+        # All of them first, so that nothing has changed where one is refused.
+        random = {
+            index: seeding.np_random(number) for index, number in enumerate(seeds) if mask[index] and number is not None
+        }
+        for index in mask.nonzero()[0].tolist():
+            number = seeds[index]
+            if number is None:
+                self._draw_episode(index)
+            else:
+                self._random[index] = random[index]
+                self._seeds[index] = episode_of(number)
+        self._have_begun |= mask
         if self._restart is not None:
             self._restart &= ~mask
         return self._begin(mask), {}
@@ -148,7 +167,7 @@ class WorldVectorEnv(VectorEnv[Observations, Actions, NDArray[Any]]):
         ValueError
             There is another number of them.
         gymnasium.error.InvalidAction
-            One is out of range. Nothing is played then.
+            One is out of range. Nothing is played or drawn then.
         gymnasium.error.ResetNeeded
             An episode has not begun, or is over and there is no autoreset. Nothing is played then.
         gymnasium.error.ClosedEnvironmentError
@@ -158,6 +177,7 @@ class WorldVectorEnv(VectorEnv[Observations, Actions, NDArray[Any]]):
         numbers = self._read_actions(actions)
         restart = self._restart
         if restart is not None:
+            self._check_actions(numbers)
             self._draw_episodes(restart)
         observations = self._observations()
         rewards, scores = np.empty(self.num_envs), np.empty(self.num_envs)
@@ -182,6 +202,8 @@ class WorldVectorEnv(VectorEnv[Observations, Actions, NDArray[Any]]):
             logger.warn("render() without a render mode: make the environments with render_mode='rgb_array'")
             return None
         self._check_open()
+        if not self._have_begun.all():
+            raise ResetNeeded("render: got no episode yet, expected a reset before it")
         frames = np.empty((self.num_envs, *self.render_size, 3), np.uint8)
         self._tasks.render(frames)
         return tuple(frames)
@@ -200,14 +222,10 @@ class WorldVectorEnv(VectorEnv[Observations, Actions, NDArray[Any]]):
 
     def _draw_episodes(self, mask: NDArray[np.bool_]) -> None:
         for index in mask.nonzero()[0].tolist():
-            self._choose_episode(index, None)
+            self._draw_episode(index)
 
-    def _choose_episode(self, index: int, seed: int | None) -> None:
-        if seed is None:
-            self._seeds[index] = draw_seed(self._random[index][0])
-        else:
-            self._random[index] = seeding.np_random(seed)
-            self._seeds[index] = episode_of(seed)
+    def _draw_episode(self, index: int) -> None:
+        self._seeds[index] = draw_seed(self._random[index][0])
 
     def _read_seeds(self, seed: int | Sequence[int | None] | None) -> Sequence[int | None]:
         if seed is None:
@@ -245,7 +263,18 @@ class WorldVectorEnv(VectorEnv[Observations, Actions, NDArray[Any]]):
             raise ValueError(f"actions: got shape {array.shape}, {expected}")
         if array.dtype.kind not in "iu":
             raise TypeError(f"actions: got an array of {array.dtype}, {expected}")
+        if array.dtype == np.uint64:
+            self._check_actions(array)  # as int64 the largest would be others
         return np.ascontiguousarray(array, np.int64)
+
+    def _check_actions(self, actions: NDArray[np.integer[Any]]) -> None:
+        """Refuses what is out of range where a step is played, before Rust would."""
+        is_wrong = (actions < 0) | (actions >= self._actions)
+        if self._restart is not None:
+            is_wrong &= ~self._restart
+        if is_wrong.any():
+            index = int(is_wrong.argmax())
+            raise InvalidAction(f"actions[{index}]: got {actions[index]}, expected 0 to {self._actions - 1}")
 
 
 class BreakoutVectorEnv(WorldVectorEnv):

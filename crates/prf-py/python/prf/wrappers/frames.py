@@ -6,7 +6,7 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-from prf._native import to_grey
+from prf._native import Goal, WindowGoal, to_grey
 from prf.envs.options import Size, choice, read_size
 
 Source: TypeAlias = Literal["render", "observation"]
@@ -28,8 +28,20 @@ class Frames:
             raise ValueError(
                 f"env: got render_mode={render_mode!r}, expected 'rgb_array'; or take source='observation'"
             )
+        self._shape: tuple[int, int] | None = self._size
+        """Height and width of the frames that are compared, where they are known."""
         if not self.are_rendered:
             check_observation_space(observation_space)
+            self._shape = self._size or observation_space.shape[:2]
+
+    def check_goal(self, goal: Goal) -> None:
+        """Refuses a window that has no place in the frames, where their size is known."""
+        if self._shape is None or not isinstance(goal, WindowGoal):
+            return
+        (height, width), (frame_height, frame_width) = goal.goal.shape, self._shape
+        if height > frame_height or width > frame_width:
+            frames = f"frames of {frame_width}x{frame_height} px"
+            raise ValueError(f"goal: got a window of {width}x{height} px, expected one that fits into {frames}")
 
     def grey(self, frame: Any) -> NDArray[np.uint8]:
         """The frame in grey."""

@@ -18,7 +18,8 @@ Act = TypeVar("Act")
 class PerceptualReward(gym.Wrapper[Obs, Act, Obs, Act], RecordConstructorArgs):
     """The reward of a step is how much the frame after it looks like the goal, above 0 and at most 1.
 
-    ``info["original_reward"]`` is what the environment gave.
+    ``info["original_reward"]`` is what the environment gave; where the environment has one in its ``info`` already, as
+    with two of these wrappers, that stays.
 
     Parameters
     ----------
@@ -37,8 +38,8 @@ class PerceptualReward(gym.Wrapper[Obs, Act, Obs, Act], RecordConstructorArgs):
     Raises
     ------
     TypeError, ValueError, OSError
-        An argument has another type or doesn't fit the environment, or the goal can't be read. Later, by
-        ``reset`` and ``step``: a frame is no picture, or smaller than the goal of a window goal.
+        An argument has another type or doesn't fit the environment, or the goal can't be read. A frame is no picture,
+        or smaller than the goal of a window goal: by ``reset`` and ``step``, if its size isn't known before.
 
     Examples
     --------
@@ -65,6 +66,7 @@ class PerceptualReward(gym.Wrapper[Obs, Act, Obs, Act], RecordConstructorArgs):
         self._frames = Frames(source, size, env.render_mode, env.observation_space)
         self.goal = make_goal(goal, descriptor)
         """The goal, with the episode so far."""
+        self._frames.check_goal(self.goal)
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Obs, dict[str, Any]]:
         """Begins an episode of the environment and of the goal."""
@@ -76,7 +78,7 @@ class PerceptualReward(gym.Wrapper[Obs, Act, Obs, Act], RecordConstructorArgs):
         """Plays a step and rewards the frame after it."""
         observation, original, terminated, truncated, info = self.env.step(action)
         reward = self.goal.reward(self._frame(observation))
-        return observation, reward, terminated, truncated, {**info, "original_reward": original}
+        return observation, reward, terminated, truncated, {"original_reward": original, **info}
 
     def _frame(self, observation: Obs) -> NDArray[np.uint8]:
         return self._frames.grey(self.env.render() if self._frames.are_rendered else observation)

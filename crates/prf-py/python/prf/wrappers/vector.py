@@ -18,8 +18,8 @@ KEY = "original_reward"
 class PerceptualReward(VectorWrapper):
     """The reward of each environment's step is how much its frame after it looks like the goal, above 0 and at most 1.
 
-    ``infos["original_reward"]`` is what the environments gave. A step in which an episode begins has the reward 0,
-    as always in Gymnasium. With the autoreset mode ``SAME_STEP`` an episode's last frame can't be rendered any more,
+    ``infos["original_reward"]`` is what the environments gave, unless they have one in their infos already. A step in
+    which an episode begins has the reward 0, as always in Gymnasium. With the autoreset mode ``SAME_STEP`` an episode's last frame can't be rendered any more,
     so frames have to be observations.
 
     Parameters
@@ -53,6 +53,7 @@ class PerceptualReward(VectorWrapper):
                 "rendered; expected 'observation', or another mode"
             )
         first = make_goal(goal, descriptor)
+        self._frames.check_goal(first)
         self.goals = (first, *(first.copy() for _ in range(env.num_envs - 1)))
         """The goals of the environments, each with the episode so far."""
         # Where the step to come begins an episode and plays nothing.
@@ -88,9 +89,9 @@ class PerceptualReward(VectorWrapper):
                 goal.reset(frame)
             else:
                 rewards[index] = goal.reward(frame)
-        infos = {**infos, **info_of(originals, ~(self._restarts | replaced))}
+        infos = {**info_of(originals, ~(self._restarts | replaced)), **infos}
         if replaced.any():
-            final = {**infos.get("final_info", {}), **info_of(originals, replaced)}
+            final = {**info_of(originals, replaced), **infos.get("final_info", {})}
             infos.update(final_info=final, _final_info=replaced.copy())
         self._restarts = over if self._mode is AutoresetMode.NEXT_STEP else np.zeros_like(over)
         return observations, rewards, terminated, truncated, infos
