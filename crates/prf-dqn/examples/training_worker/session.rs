@@ -89,7 +89,7 @@ struct Stretches<'a> {
 }
 
 impl Recorder for Stretches<'_> {
-    fn record(&mut self, event: &Event) -> prf_dqn::Result<()> {
+    fn record(&mut self, event: &Event<'_>) -> prf_dqn::Result<()> {
         let Event::Progress(progress) = event else { return Ok(()) };
         if progress.steps < self.end {
             return Ok(());
