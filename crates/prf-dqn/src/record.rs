@@ -7,11 +7,13 @@ use serde::{Deserialize, Serialize};
 use crate::error::Result;
 
 mod jsonl;
+mod metrics;
 
-pub use jsonl::JsonlRecorder;
+pub use jsonl::{JsonlRecorder, is_being_recorded};
+pub use metrics::Metrics;
 
 /// Something worth telling.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum Event {
     /// How the training episodes since the last such event went.
@@ -27,7 +29,7 @@ pub enum Event {
 }
 
 /// Training episodes, summed up.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TrainRecord {
     /// Steps so far, over all environments.
     pub step: u64,
@@ -52,7 +54,7 @@ pub struct TrainRecord {
 }
 
 /// A greedy evaluation on the run's fixed seeds.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct EvaluationRecord {
     /// Steps so far.
     pub step: u64,

@@ -15,6 +15,7 @@ use crate::interrupt::Interrupt;
 use crate::printer::Printer;
 use crate::progress::ProgressReporter;
 use crate::settings::{LoadedRun, load_run};
+use crate::shell::{quoted, shown};
 
 pub(crate) fn run(args: &TrainArgs, printer: &mut Printer) -> Result<ExitStatus> {
     let loaded = load_run(&args.config, &args.set, args.seed)?;
@@ -60,9 +61,10 @@ fn train(
         printer.note(format!("going on from step {}", trainer.steps()));
     }
     let manifest = |trainer: &Trainer, finished| Manifest {
-        prf_version: env!("CARGO_PKG_VERSION"),
-        git_revision: option_env!("PRF_GIT_REVISION"),
-        libtorch_version: prf_dqn::LIBTORCH_VERSION,
+        prf_version: env!("CARGO_PKG_VERSION").to_owned(),
+        git_revision: option_env!("PRF_GIT_REVISION").map(str::to_owned),
+        libtorch_version: prf_dqn::LIBTORCH_VERSION.to_owned(),
+        machine: Some(prf_dqn::machine::describe()),
         seed,
         device: format!("{device:?}").to_lowercase(),
         threads,
@@ -134,15 +136,4 @@ fn resume_command(args: &TrainArgs, run: &Path) -> String {
         command.push_str(&format!(" --set {}", quoted(set)));
     }
     command
-}
-
-/// A path as it can be typed again.
-fn shown(path: &Path) -> String {
-    quoted(&path.display().to_string())
-}
-
-/// A word as a shell takes it.
-fn quoted(word: &str) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "._/-=:,+@%".contains(c);
-    if word.chars().all(plain) { word.to_owned() } else { format!("'{}'", word.replace('\'', r"'\''")) }
 }
