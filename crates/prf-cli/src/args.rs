@@ -44,7 +44,7 @@ pub(crate) enum Command {
     Eval(EvalArgs),
     /// List the runs in a folder: how far each has come, how good it is, and how to go on with it
     Runs(RunsArgs),
-    /// Draw the learning curves of runs and seeds, with 95 % intervals
+    /// Draw the learning curves of runs and seeds, with 95% intervals
     #[command(after_help = runs::PLOT_HELP)]
     Plot(PlotArgs),
     /// Write one page about runs: claims, curves, the agent playing, and what the reward ranks best and worst

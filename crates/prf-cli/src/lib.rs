@@ -21,6 +21,8 @@ mod printer;
 #[cfg(feature = "train")]
 mod progress;
 #[cfg(feature = "train")]
+mod report;
+#[cfg(feature = "train")]
 mod runs;
 mod settings;
 #[cfg(feature = "train")]

@@ -12,10 +12,12 @@ mod goal;
 pub(crate) mod init;
 mod inspect;
 #[cfg(feature = "train")]
-mod learning;
+pub(crate) mod learning;
 mod play;
 #[cfg(feature = "train")]
 mod plot;
+#[cfg(feature = "train")]
+mod report;
 #[cfg(feature = "train")]
 mod runs;
 mod score;
@@ -36,7 +38,7 @@ pub(crate) fn run(command: Command, printer: &mut Printer) -> Result<ExitStatus>
         #[cfg(feature = "train")]
         Command::Plot(args) => plot::run(&args, printer),
         #[cfg(feature = "train")]
-        Command::Report(_) => unimplemented!(),
+        Command::Report(args) => report::run(&args, printer),
         #[cfg(not(feature = "train"))]
         Command::Train(_) | Command::Eval(_) | Command::Runs(_) | Command::Plot(_) | Command::Report(_) => {
             Err(without_training())

@@ -8,6 +8,7 @@ use crate::ExitStatus;
 use crate::args::PlotArgs;
 use crate::error::{CliError, Result};
 use crate::files::write_whole;
+use crate::plot::curve::Shape;
 use crate::plot::{png, write_svg};
 use crate::printer::{Format, Printer};
 use crate::runs::curves::{LearningCurve, Question};
@@ -49,7 +50,7 @@ pub(crate) fn run(args: &PlotArgs, printer: &mut Printer) -> Result<ExitStatus> 
         Format::Text => print(&question, &curves, players, printer)?,
     }
     if let Some(path) = out(args) {
-        write(&path, &picture.svg()?)?;
+        write(&path, &picture.svg(Shape::Titled)?)?;
         printer.note(format_args!("drew {} into {}", curves_in_words(curves.len()), path.display()));
     }
     Ok(if is_damaged { ExitStatus::FinishedWithLoss } else { ExitStatus::Done })
@@ -88,20 +89,16 @@ fn records(curves: &[LearningCurve], players: Option<Players>) -> impl Iterator<
 /// Where each curve ends.
 fn print(question: &Question, curves: &[LearningCurve], players: Option<Players>, printer: &mut Printer) -> Result<()> {
     printer.line(format_args!(
-        "{} at the end, {} over seeds [95 % interval]",
+        "{} at the end, {} over seeds [95% interval]",
         question.y.name(),
         question.aggregate.name()
     ))?;
     let width = curves.iter().map(|curve| curve.name.chars().count()).max().unwrap_or(0).max("oracle".len());
-    for LearningCurve { name, seeds, points } in curves {
-        let Some(last) = points.last() else { continue };
+    for curve in curves {
+        let Some(last) = curve.points.last() else { continue };
         let interval = last.interval.map_or(String::new(), |[low, high]| format!(" [{low:.3}, {high:.3}]"));
-        let seeds = if *seeds == 1 { "1 seed".to_owned() } else { format!("{seeds} seeds") };
-        printer.line(format_args!(
-            "  {name:width$}  {:.3}{interval}  {seeds}, {}",
-            last.y,
-            question.x.shown(last.x)
-        ))?;
+        let (name, seeds, end) = (&curve.name, curve.seeds_in_words(), question.x.shown(last.x));
+        printer.line(format_args!("  {name:width$}  {:.3}{interval}  {seeds}, {end}", last.y))?;
     }
     if let Some(Players { oracle, random }) = players {
         printer.line(format_args!("  {:width$}  {oracle:.3}  mean of {EPISODES} episodes", "oracle"))?;

@@ -41,9 +41,11 @@ impl Axis {
         Axis::over("score", least, largest, nice_step(largest - least))
     }
 
-    /// Any values from `low` to `high`.
+    /// Any values from `low` to `high`, and 0 if that is not far.
     #[cfg(feature = "train")]
     pub(crate) fn spanning(name: &'static str, low: f64, high: f64) -> Axis {
+        const NEAR: f64 = 0.4;
+        let low = if (0.0..NEAR * high).contains(&low) { 0.0 } else { low };
         Axis::over(name, low, high, nice_step(high - low))
     }
 

@@ -27,6 +27,8 @@ const BELOW: u32 = 88;
 /// Room for the names of levels, right, and the least height of one.
 const RIGHT: u32 = 116;
 const LEVEL_NAME: i32 = 62;
+/// Room for the upper half of a level's name.
+const ABOVE_LEVELS: u32 = 24;
 /// Frames are marked one by one where at least this much lies between them.
 const BETWEEN_DOTS: f64 = 24.0;
 /// Points closer together than this are thinned out: a pixel.
@@ -99,12 +101,7 @@ type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<Axis, Axis>>;
 
 impl Diagram<'_> {
     /// The diagram as SVG.
-    pub(crate) fn svg(&self) -> Result<String> {
-        self.draw(Shape::Titled)
-    }
-
-    /// The diagram in one of its shapes, as SVG.
-    pub(crate) fn draw(&self, shape: Shape) -> Result<String> {
+    pub(crate) fn svg(&self, shape: Shape) -> Result<String> {
         let (width, diagram_height, margin) = match shape {
             Shape::Titled => (WIDTH, DIAGRAM, theme::MARGIN),
             Shape::Untitled => (WIDTH, DIAGRAM, 0),
@@ -138,9 +135,10 @@ impl Diagram<'_> {
     }
 
     fn draw_diagram(&self, canvas: &Canvas<'_>) -> DrawResult {
-        let right = if self.levels.is_empty() { 0 } else { RIGHT };
+        let (right, above) = if self.levels.is_empty() { (0, 0) } else { (RIGHT, ABOVE_LEVELS) };
         let (canvas, names) = canvas.split_horizontally(canvas.dim_in_pixel().0 - right);
         let mut chart = ChartBuilder::on(&canvas)
+            .margin_top(above)
             .set_label_area_size(LabelAreaPosition::Left, LEFT)
             .set_label_area_size(LabelAreaPosition::Bottom, BELOW)
             .build_cartesian_2d(self.x.clone(), self.y.clone())?;

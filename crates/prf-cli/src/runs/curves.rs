@@ -31,6 +31,12 @@ pub(crate) struct LearningCurve {
     pub(crate) points: Vec<Point>,
 }
 
+impl LearningCurve {
+    pub(crate) fn seeds_in_words(&self) -> String {
+        if self.seeds == 1 { "1 seed".to_owned() } else { format!("{} seeds", self.seeds) }
+    }
+}
+
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Point {
     pub(crate) x: f64,

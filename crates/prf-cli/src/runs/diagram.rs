@@ -25,18 +25,10 @@ pub(crate) fn players(groups: &[Group], y: Quantity) -> Result<Option<Players>> 
 }
 
 impl Picture<'_> {
-    /// The diagram with a title, for a file of its own.
-    pub(crate) fn svg(&self) -> Result<String> {
-        self.draw(Shape::Titled)
-    }
-
-    /// The diagram without a title, for a page.
-    pub(crate) fn untitled(&self, shape: Shape) -> Result<String> {
-        self.draw(shape)
-    }
-
-    fn draw(&self, shape: Shape) -> Result<String> {
-        let unit = Unit::of(self.question.x, self.points().map(|point| point.x).fold(0.0, f64::max));
+    /// The diagram as SVG.
+    pub(crate) fn svg(&self, shape: Shape) -> Result<String> {
+        let last = self.points().map(|point| point.x).fold(0.0, f64::max);
+        let unit = Unit::of(self.question.x, last);
         let curves: Vec<Curve> = self.curves.iter().map(|curve| unit.curve(curve)).collect();
         let levels = self.levels();
         let highs = self.points().map(|point| point.interval.map_or(point.y, |[_, high]| high.max(point.y)));
@@ -47,17 +39,13 @@ impl Picture<'_> {
         let diagram = Diagram {
             title: format!("{}: {}", self.world, self.question.y.name()),
             subtitle: self.subtitle(),
-            x: Axis::spanning(
-                unit.name,
-                0.0,
-                curves.iter().flat_map(|curve| curve.points.iter().flatten()).map(|p| p.0).fold(0.0, f64::max),
-            ),
+            x: Axis::spanning(unit.name, 0.0, last / unit.size),
             y: Axis::spanning(self.question.y.name(), low, high),
             curves: &curves,
             levels: &levels,
             joined: Joined::Line,
         };
-        diagram.draw(shape)
+        diagram.svg(shape)
     }
 
     fn points(&self) -> impl Iterator<Item = &Point> {
@@ -72,7 +60,7 @@ impl Picture<'_> {
     /// What the curves, the bands and the dashed lines are.
     pub(crate) fn subtitle(&self) -> String {
         let mut words = match self.curves.iter().map(|curve| curve.seeds).max() {
-            Some(2..) => format!("{} over seeds with its 95 % bootstrap interval", self.question.aggregate.name()),
+            Some(2..) => format!("{} over seeds with its 95% bootstrap interval", self.question.aggregate.name()),
             _ => "one run a curve".to_owned(),
         };
         if self.players.is_some() {
@@ -104,10 +92,9 @@ impl Unit {
     }
 
     fn curve(&self, curve: &LearningCurve) -> Curve {
-        let seeds = if curve.seeds == 1 { "1 seed".to_owned() } else { format!("{} seeds", curve.seeds) };
         let band: Band = curve.points.iter().filter_map(|p| Some((p.x / self.size, p.interval?))).collect();
         Curve {
-            name: format!("{} ({seeds})", curve.name),
+            name: format!("{} ({})", curve.name, curve.seeds_in_words()),
             points: curve.points.iter().map(|point| Some((point.x / self.size, point.y))).collect(),
             band,
         }

@@ -19,16 +19,6 @@ pub(crate) struct Group {
     pub(crate) runs: Vec<Run>,
 }
 
-impl Group {
-    /// How many runs there are: `3 seeds`.
-    pub(crate) fn seeds(&self) -> String {
-        match self.runs.len() {
-            1 => "1 seed".to_owned(),
-            count => format!("{count} seeds"),
-        }
-    }
-}
-
 /// What the runs of a group have in common: config and the files of the goal.
 #[derive(PartialEq)]
 struct Key {

@@ -5,7 +5,7 @@ use prf_core::{Alteration, Altered, Evidence, Judgement};
 use crate::error::Result;
 use crate::evidence::{Kind, Known, words};
 use crate::plot::axis::Axis;
-use crate::plot::curve::{Band, Curve, Diagram, Joined};
+use crate::plot::curve::{Band, Curve, Diagram, Joined, Shape};
 
 /// The diagram of the rewards of these distances.
 pub(super) fn svg(
@@ -37,7 +37,7 @@ pub(super) fn svg(
         levels: &[],
         joined,
     };
-    diagram.svg()
+    diagram.svg(Shape::Titled)
 }
 
 fn bounds(values: impl Iterator<Item = f64> + Clone) -> (f64, f64) {

@@ -7,7 +7,7 @@ use prf_core::io::FrameInfo;
 
 use crate::error::Result;
 use crate::plot::axis::Axis;
-use crate::plot::curve::{Band, Curve, Diagram, Joined};
+use crate::plot::curve::{Band, Curve, Diagram, Joined, Shape};
 
 /// The rewards of every source, in order. Single pictures make one source together.
 #[derive(Default)]
@@ -96,7 +96,7 @@ impl Curves {
             levels: &[],
             joined: Joined::Line,
         };
-        diagram.svg()
+        diagram.svg(Shape::Titled)
     }
 }
 
