@@ -15,7 +15,7 @@ fn help_lists_every_command_and_the_exit_codes() {
     let mut help = prf(".".as_ref());
     help.arg("--help");
     let assert = help.assert().success().stderr(is_empty());
-    for command in ["train", "eval", "score", "init", "worlds", "play", "completions"] {
+    for command in ["train", "eval", "runs", "plot", "report", "score", "init", "worlds", "play", "completions"] {
         let line = is_match(format!("(?m)^  {command}  +[A-Z]")).expect("it is a pattern");
         assert!(line.eval(&String::from_utf8_lossy(&assert.get_output().stdout)), "{command}");
     }
@@ -24,7 +24,7 @@ fn help_lists_every_command_and_the_exit_codes() {
 
 #[test]
 fn every_command_has_help() {
-    for command in ["train", "eval", "score", "init", "worlds", "play", "completions"] {
+    for command in ["train", "eval", "runs", "plot", "report", "score", "init", "worlds", "play", "completions"] {
         prf(".".as_ref())
             .args([command, "--help"])
             .assert()
@@ -86,7 +86,7 @@ fn a_closed_pipe_ends_quietly() {
 #[cfg(not(feature = "train"))]
 #[test]
 fn without_training_one_is_told_how_to_get_it() {
-    for command in ["train", "eval"] {
+    for command in ["train", "eval", "runs", "plot", "report"] {
         prf(".".as_ref())
             .args([command, "some.toml"])
             .assert()

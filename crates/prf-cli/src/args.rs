@@ -14,10 +14,12 @@ use crate::printer::Format;
 pub(crate) use self::ck_plus::CkPlusArgs;
 pub(crate) use self::evidence::{EvidenceArgs, InspectArgs, TuneArgs};
 pub(crate) use self::play::{PlayArgs, PlayerArg, RecordingArgs, WorldsArgs};
+pub(crate) use self::runs::{Aggregate, Place, PlotArgs, Quantity, ReportArgs, RunsArgs};
 
 mod ck_plus;
 mod evidence;
 mod play;
+mod runs;
 
 const EXIT_CODES: &str = "\
 Exit codes: 0 done, 1 failed, 2 wrong arguments or config, 3 finished but some input was lost, \
@@ -41,6 +43,14 @@ pub(crate) enum Command {
     Train(TrainArgs),
     /// Play episodes with the greedy policy of a run or a checkpoint
     Eval(EvalArgs),
+    /// List the runs in a folder: how far each has come, how good it is, and how to go on with it
+    Runs(RunsArgs),
+    /// Draw the learning curves of runs and seeds, with 95% intervals
+    #[command(after_help = runs::PLOT_HELP)]
+    Plot(PlotArgs),
+    /// Write one page about runs: claims, curves, the agent playing, and what the reward ranks best and worst
+    #[command(after_help = runs::REPORT_HELP)]
+    Report(ReportArgs),
     /// Score pictures, animations or videos against a goal
     #[command(after_help = SCORE_EXIT_CODES)]
     Score(ScoreArgs),
@@ -75,7 +85,9 @@ impl Command {
             Self::Goal(GoalArgs { command: GoalCommand::CkPlus(args) }) => args.format,
             Self::Worlds(args) => args.format,
             Self::Play(args) => args.format,
-            Self::Train(_) | Self::Goal(_) | Self::Init(_) | Self::Completions(_) => Format::Text,
+            Self::Runs(args) => args.format,
+            Self::Plot(args) => args.format,
+            Self::Train(_) | Self::Report(_) | Self::Goal(_) | Self::Init(_) | Self::Completions(_) => Format::Text,
         }
     }
 }

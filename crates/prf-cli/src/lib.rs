@@ -22,7 +22,13 @@ mod plot;
 mod printer;
 #[cfg(feature = "train")]
 mod progress;
+#[cfg(feature = "train")]
+mod report;
+#[cfg(feature = "train")]
+mod runs;
 mod settings;
+#[cfg(feature = "train")]
+mod shell;
 
 /// How a command ended that did what it could.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -76,7 +76,7 @@ pub use evidence::{
     settings, windows_around,
 };
 #[cfg(feature = "explain")]
-pub use explain::{Picture, Ranked, draw_explanation, draw_ranking};
+pub use explain::{Comparison, Picture, Ranked, draw_comparison, draw_explanation, draw_ranking};
 pub use frame::{Frame, FrameMut, FrameView};
 pub use goal_check::{GoalWarning, check_goal};
 pub use hog::{CellSize, Hog, HogLayout, HogParams, Norm};

@@ -1,10 +1,11 @@
 //! Everything a run needs to go on, in a directory that is there whole or not at all.
 
 use std::collections::BTreeMap;
-use std::fs;
+use std::fs::{self, File};
+use std::io::{ErrorKind, Read};
 use std::path::Path;
 
-use safetensors::tensor::TensorView;
+use safetensors::tensor::{Metadata, TensorView};
 use safetensors::{Dtype, SafeTensors};
 
 use crate::error::{Error, Result};
@@ -89,6 +90,14 @@ impl Checkpoint {
         Ok(Self { state, blobs, vectors, model })
     }
 
+    /// Checks that the files of the checkpoint in `dir` are there at their full lengths, without reading what they hold.
+    ///
+    /// # Errors
+    /// As [`Checkpoint::read`].
+    pub fn check_lengths(dir: &Path) -> Result<()> {
+        [MODEL_FILE, STATE_FILE].iter().try_for_each(|name| check_length(&dir.join(name)))
+    }
+
     /// Takes the byte string `name` out.
     pub(crate) fn blob(&mut self, name: &str, dir: &Path) -> Result<Vec<u8>> {
         self.blobs.remove(name).ok_or_else(|| missing(name, dir))
@@ -103,6 +112,33 @@ impl Checkpoint {
         let got = format!("{} numbers in `{name}`", vector.len());
         Err(Error::checkpoint(dir.join(STATE_FILE), got, format!("{count} of them")))
     }
+}
+
+/// Checks that a safetensors file is as long as its header says.
+fn check_length(path: &Path) -> Result<()> {
+    /// As the safetensors crate has it.
+    const LONGEST_HEADER: u64 = 100_000_000;
+    let mut file = File::open(path).map_err(Error::unreadable(path))?;
+    let found = file.metadata().map_err(Error::io("read", path))?.len();
+    let mut read = || -> std::io::Result<(u64, Vec<u8>)> {
+        let mut length = [0; 8];
+        file.read_exact(&mut length)?;
+        let length = u64::from_le_bytes(length);
+        let mut header = Vec::new();
+        (&mut file).take(length.min(LONGEST_HEADER)).read_to_end(&mut header)?;
+        Ok((length, header))
+    };
+    let (length, header) = match read() {
+        Err(error) if error.kind() == ErrorKind::UnexpectedEof => (0, Vec::new()),
+        read => read.map_err(Error::io("read", path))?,
+    };
+    let metadata: Option<Metadata> = serde_json::from_slice(&header).ok();
+    let expected = metadata.and_then(|metadata| length.checked_add(8 + metadata.data_len() as u64));
+    if expected == Some(found) {
+        return Ok(());
+    }
+    let expected = expected.map_or("a whole safetensors file".to_owned(), |bytes| format!("{bytes} bytes"));
+    Err(Error::checkpoint(path, format!("{found} bytes"), expected))
 }
 
 fn missing(name: &str, dir: &Path) -> Error {

@@ -12,6 +12,7 @@ pub mod estimate;
 pub mod evaluate;
 pub mod files;
 pub mod learner;
+pub mod machine;
 pub mod network;
 pub mod optimizer;
 pub mod record;

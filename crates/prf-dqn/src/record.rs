@@ -10,18 +10,20 @@ mod jsonl;
 mod kept;
 mod mcap;
 mod messages;
+mod metrics;
 mod step;
 mod tensorboard;
 
-pub use jsonl::JsonlRecorder;
+pub use jsonl::{JsonlRecorder, is_being_recorded};
 pub use kept::{KeptRecorder, Loss, Marks, Records};
 pub use mcap::{McapRecorder, Preamble};
 pub use messages::{Clock, Message, STEP_NS, Topic, goal_message, messages};
+pub use metrics::Metrics;
 pub use step::{EpisodeKind, StepRecord};
 pub use tensorboard::TensorBoardRecorder;
 
 /// Something worth telling.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum Event<'a> {
     /// How the training episodes since the last such event went.
@@ -40,7 +42,7 @@ pub enum Event<'a> {
 }
 
 /// Training episodes, summed up.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TrainRecord {
     /// Steps so far, over all environments.
     pub step: u64,
@@ -65,7 +67,7 @@ pub struct TrainRecord {
 }
 
 /// A greedy evaluation on the run's fixed seeds.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct EvaluationRecord {
     /// Steps so far.
     pub step: u64,

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use prf_core::Goal;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::config::RunConfig;
 use crate::error::{Error, Result};
@@ -27,14 +27,17 @@ pub struct RunDir {
 }
 
 /// Where a run came from and where its time went: `manifest.json`.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Manifest {
     /// Version of PRF.
-    pub prf_version: &'static str,
+    pub prf_version: String,
     /// Revision of the sources, when prf was built in a git checkout.
-    pub git_revision: Option<&'static str>,
+    pub git_revision: Option<String>,
     /// Version of libtorch.
-    pub libtorch_version: &'static str,
+    pub libtorch_version: String,
+    /// The machine, as [`machine::describe`](crate::machine::describe) has it; absent from older runs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub machine: Option<String>,
     /// Seed of the run.
     pub seed: u64,
     /// Device of the network.
@@ -150,6 +153,29 @@ impl RunDir {
     /// [`Error::Io`] when it cannot be written.
     pub fn write_manifest(&self, manifest: &Manifest) -> Result<()> {
         let text = serde_json::to_vec_pretty(manifest).expect("a manifest holds only numbers and strings");
-        write_whole(&self.path.join("manifest.json"), &text)
+        write_whole(&self.manifest_path(), &text)
+    }
+
+    /// Reads `manifest.json`; nothing if the run has none yet.
+    ///
+    /// # Errors
+    /// [`Error::Io`] when it cannot be read, [`Error::Mismatch`] when it is no manifest.
+    pub fn manifest(&self) -> Result<Option<Manifest>> {
+        let path = self.manifest_path();
+        let bytes = match fs::read(&path) {
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+            read => read.map_err(Error::io("read", &path))?,
+        };
+        let manifest = serde_json::from_slice(&bytes);
+        Ok(Some(manifest.map_err(|error| Error::mismatch(&path, error.to_string(), "what prf train writes there"))?))
+    }
+
+    fn manifest_path(&self) -> PathBuf {
+        self.path.join("manifest.json")
+    }
+
+    /// The files of the goal's picture and of its mask that are there.
+    pub fn goal_paths(&self) -> impl Iterator<Item = PathBuf> {
+        [GOAL, MASK].map(|name| self.path.join(name)).into_iter().filter(|path| path.is_file())
     }
 }

@@ -3,14 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use prf_core::Frame;
-use prf_dqn::checkpoint::{CheckpointStore, MODEL_FILE, Model};
-use prf_dqn::compute::Compute;
+use prf_dqn::checkpoint::{CheckpointStore, MODEL_FILE};
 use prf_dqn::evaluate::{Episode, Spread, episode_seeds, play_greedily};
 use prf_dqn::files::write_whole;
 use prf_dqn::learner::greedy_actions;
 use prf_dqn::network::QNetwork;
 use prf_dqn::run_dir::RunDir;
-use prf_dqn::trainer::{architecture, set_threads};
+use prf_dqn::trainer::set_threads;
 use prf_envs::players::{Oracle, Random, mean_score};
 use prf_envs::{Status, Task, registry};
 use serde::Serialize;
@@ -48,7 +47,7 @@ pub(crate) fn run(args: &EvalArgs, printer: &mut Printer) -> Result<ExitStatus> 
     let loaded = load_run(&run.config_path(), &[], None)?;
     let device = learning::open_device(args.device)?;
     set_threads(&loaded.config);
-    let network = load(&loaded, &model_path, device).map_err(|error| learning::explain(error.into(), None))?;
+    let network = learning::load_network(&loaded, &model_path, device)?;
 
     let seed = args.seed.unwrap_or(0);
     let seeds = episode_seeds(seed, "eval", args.episodes as usize);
@@ -72,14 +71,6 @@ pub(crate) fn run(args: &EvalArgs, printer: &mut Printer) -> Result<ExitStatus> 
         printer.note(format!("drew the first episode into {}", path.display()));
     }
     Ok(ExitStatus::Done)
-}
-
-/// The network in `model`, if it fits the run's task.
-fn load(loaded: &LoadedRun, model: &Path, device: tch::Device) -> prf_dqn::Result<QNetwork> {
-    let task = Task::new(&loaded.config.task(), loaded.goal.as_ref())?;
-    let found = Model::read(model)?;
-    found.check(&architecture(&task, loaded.config.train.dueling)?, model)?;
-    found.network(Compute { device, precision: loaded.config.train.precision })
 }
 
 /// The run folder and the model file that `path` (a run, one of its checkpoints or a model file) stands for.

@@ -1,13 +1,18 @@
-//! What `train` and `eval` share: devices, and the learner's errors in the words of the command line.
+//! What commands about runs share: networks, devices, and the learner's errors in the words of the command line.
 
 use std::io::ErrorKind;
 use std::path::Path;
 
-use prf_dqn::checkpoint::FORMAT;
+use prf_dqn::checkpoint::{FORMAT, Model};
+use prf_dqn::compute::Compute;
+use prf_dqn::network::QNetwork;
 use prf_dqn::record::TimeShares;
+use prf_dqn::trainer::architecture;
+use prf_envs::Task;
 
 use crate::args::Device;
 use crate::error::{CliError, Result};
+use crate::settings::LoadedRun;
 
 pub(super) fn open_device(device: Device) -> Result<tch::Device> {
     let device = match device {
@@ -16,6 +21,17 @@ pub(super) fn open_device(device: Device) -> Result<tch::Device> {
         Device::Mps => prf_dqn::device::Device::Mps,
     };
     device.open().map_err(|error| CliError::failed(error.to_string()).into())
+}
+
+/// The network in the file `model`, if it fits the run's task.
+pub(crate) fn load_network(loaded: &LoadedRun, model: &Path, device: tch::Device) -> Result<QNetwork> {
+    let load = || -> prf_dqn::Result<QNetwork> {
+        let task = Task::new(&loaded.config.task(), loaded.goal.as_ref())?;
+        let found = Model::read(model)?;
+        found.check(&architecture(&task, loaded.config.train.dueling)?, model)?;
+        found.network(Compute { device, precision: loaded.config.train.precision })
+    };
+    load().map_err(|error| explain(error.into(), None))
 }
 
 /// Adds what to do about an error of the learner.
@@ -105,7 +121,7 @@ pub(super) fn time_line(time: &TimeShares) -> String {
 }
 
 /// A time for people.
-pub(super) fn duration(seconds: f64) -> String {
+pub(crate) fn duration(seconds: f64) -> String {
     let total = seconds.round() as u64;
     match (total / 3600, total / 60 % 60, total % 60) {
         (0, 0, seconds) => format!("{seconds} s"),

@@ -17,6 +17,7 @@ use crate::live::LiveServer;
 use crate::printer::Printer;
 use crate::progress::ProgressReporter;
 use crate::settings::{LoadedRun, load_run};
+use crate::shell::{quoted, shown};
 
 /// Revision of the sources, when prf was built in a git checkout.
 const GIT_REVISION: Option<&str> = option_env!("PRF_GIT_REVISION");
@@ -76,9 +77,10 @@ fn train(
         printer.warning(loss, Some("what the run has learned is whole"));
     }
     let manifest = |trainer: &Trainer, finished| Manifest {
-        prf_version: env!("CARGO_PKG_VERSION"),
-        git_revision: GIT_REVISION,
-        libtorch_version: prf_dqn::LIBTORCH_VERSION,
+        prf_version: env!("CARGO_PKG_VERSION").to_owned(),
+        git_revision: GIT_REVISION.map(str::to_owned),
+        libtorch_version: prf_dqn::LIBTORCH_VERSION.to_owned(),
+        machine: Some(prf_dqn::machine::describe()),
         seed,
         device: format!("{device:?}").to_lowercase(),
         threads,
@@ -183,15 +185,4 @@ fn resume_command(args: &TrainArgs, run: &Path) -> String {
         command.push_str(&format!(" --set {}", quoted(set)));
     }
     command
-}
-
-/// A path as it can be typed again.
-fn shown(path: &Path) -> String {
-    quoted(&path.display().to_string())
-}
-
-/// A word as a shell takes it.
-fn quoted(word: &str) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "._/-=:,+@%".contains(c);
-    if word.chars().all(plain) { word.to_owned() } else { format!("'{}'", word.replace('\'', r"'\''")) }
 }

@@ -41,6 +41,14 @@ impl Axis {
         Axis::over("score", least, largest, nice_step(largest - least))
     }
 
+    /// Any values from `low` to `high`, and 0 if that is not far.
+    #[cfg(feature = "train")]
+    pub(crate) fn spanning(name: &'static str, low: f64, high: f64) -> Axis {
+        const NEAR: f64 = 0.4;
+        let low = if (0.0..NEAR * high).contains(&low) { 0.0 } else { low };
+        Axis::over(name, low, high, nice_step(high - low))
+    }
+
     /// Rewards from `least` to `largest`: all there can be, 0 to 1, if they spread far; otherwise as much as shows
     /// how they differ, but no less than a hundredth of them, so that rounding doesn't look like a result.
     pub(crate) fn rewards(least: f64, largest: f64) -> Axis {
@@ -66,6 +74,12 @@ impl Axis {
         let (first, last) = ((low / step - slack).ceil() as i64, (high / step + slack).floor() as i64);
         let marks = (first..=last).map(|mark| mark as f64 * step).collect();
         Axis { name, range: low - beyond..high + beyond, marks, step }
+    }
+
+    /// A number between marks, with a digit more than they have.
+    pub(crate) fn finer_number(&self, value: f64) -> String {
+        let decimals = (1.0 - self.step.log10().floor()).max(0.0) as usize;
+        format!("{value:.decimals$}")
     }
 
     /// A mark's number, with as many digits as tell it from its neighbours.

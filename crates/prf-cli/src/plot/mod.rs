@@ -15,9 +15,14 @@ pub(crate) mod axis;
 pub(crate) mod curve;
 pub(crate) mod heat;
 mod legend;
+#[cfg(feature = "train")]
+mod raster;
 pub(crate) mod text;
 pub(crate) mod theme;
 mod thin;
+
+#[cfg(feature = "train")]
+pub(crate) use self::raster::png;
 
 /// What a diagram, or a part of one, is drawn on; (0, 0) is its top left corner.
 pub(crate) type Canvas<'a> = DrawingArea<SVGBackend<'a>, Shift>;

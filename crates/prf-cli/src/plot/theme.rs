@@ -69,6 +69,11 @@ impl Series {
         self.colour.mix(0.45).filled()
     }
 
+    /// Behind a curve, and never so strong that it hides another.
+    pub(crate) fn shade(self) -> ShapeStyle {
+        self.colour.mix(0.16).filled()
+    }
+
     pub(crate) fn dot(self) -> ShapeStyle {
         self.colour.filled()
     }

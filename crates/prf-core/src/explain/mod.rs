@@ -1,6 +1,7 @@
 //! Draws where a score came from: goal and agent side by side, what of them was compared, and what differs.
 
 mod canvas;
+mod comparison;
 mod glyphs;
 mod heat;
 mod ranking;
@@ -9,6 +10,7 @@ use std::f32::consts::{PI, TAU};
 
 pub use canvas::Picture;
 use canvas::{BOX, GREY, INK, Panel, WINDOW};
+pub use comparison::{Comparison, draw_comparison};
 pub use ranking::{Ranked, draw_ranking};
 
 use crate::{Explanation, FrameView, Norm, Rect};

@@ -130,7 +130,11 @@ mod tests {
             fs::write(&path, &bytes[..length]).expect("write");
             let error = Model::read(&path).expect_err("cut short").to_string();
             assert!(error.contains("model.safetensors") && error.contains("expected a whole"), "{error}");
+            let error = super::super::check_length(&path).expect_err("cut short").to_string();
+            assert!(error.contains(&format!("model.safetensors: got {length} bytes, expected ")), "{error}");
         }
+        fs::write(&path, &bytes).expect("write");
+        super::super::check_length(&path).expect("it is whole");
     }
 
     #[test]

@@ -38,6 +38,19 @@ impl JsonlRecorder {
     }
 }
 
+/// Whether a process records into the file at `path` now. For the moment that this takes, none can begin to.
+///
+/// # Errors
+/// When the file cannot be opened.
+pub fn is_being_recorded(path: &Path) -> Result<bool> {
+    let file = File::open(path).map_err(Error::io("open", path))?;
+    match file.try_lock_shared() {
+        Ok(()) => Ok(false),
+        Err(TryLockError::WouldBlock) => Ok(true),
+        Err(TryLockError::Error(source)) => Err(Error::io("lock", path)(source)),
+    }
+}
+
 impl Recorder for JsonlRecorder {
     fn record(&mut self, event: &Event<'_>) -> Result<()> {
         if !matches!(event, Event::Train(_) | Event::Evaluation(_)) {

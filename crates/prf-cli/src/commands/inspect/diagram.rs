@@ -5,7 +5,7 @@ use prf_core::{Alteration, Altered, Evidence, Judgement};
 use crate::error::Result;
 use crate::evidence::{Kind, Known, words};
 use crate::plot::axis::Axis;
-use crate::plot::curve::{Curve, Diagram, Joined};
+use crate::plot::curve::{Band, Curve, Diagram, Joined, Shape};
 
 /// The diagram of the rewards of these distances.
 pub(super) fn svg(
@@ -34,9 +34,10 @@ pub(super) fn svg(
         },
         y: Axis::rewards(least, largest),
         curves: &curves,
+        levels: &[],
         joined,
     };
-    diagram.svg()
+    diagram.svg(Shape::Titled)
 }
 
 fn bounds(values: impl Iterator<Item = f64> + Clone) -> (f64, f64) {
@@ -53,7 +54,7 @@ fn by_score(known: &Known, rewards: &[f64]) -> Vec<Curve> {
             let success = label.success.map(|success| f64::from(u8::from(success)));
             Some(Some((if has_scores { label.score? } else { success? }, reward)))
         });
-        Curve { name: name.to_owned(), points: points.collect() }
+        Curve { name: name.to_owned(), points: points.collect(), band: Band::new() }
     };
     let curves = [series("frames", None), series("not a success", Some(false)), series("success", Some(true))];
     curves.into_iter().filter(|curve| !curve.points.is_empty()).collect()
@@ -66,7 +67,7 @@ fn by_time(known: &Known, rewards: &[f64]) -> Vec<Curve> {
     let curve = |(number, (&start, end)): (usize, (&usize, usize))| {
         let first = indices.get(start).copied().unwrap_or(0);
         let points = (start..end).map(|at| Some(((indices[at] - first) as f64, rewards[at]))).collect();
-        Curve { name: format!("demonstration {}", number + 1), points }
+        Curve { name: format!("demonstration {}", number + 1), points, band: Band::new() }
     };
     let curves = starts.iter().zip(ends).enumerate().map(curve);
     curves.filter(|curve| !curve.points.is_empty()).collect()
@@ -88,9 +89,13 @@ fn by_displacement(altered: &[Altered<'_>], rewards: &[f64]) -> Vec<Curve> {
             (level as f64, rewards.iter().sum::<f64>() / rewards.len() as f64)
         };
         let displaced = std::iter::once((0.0, 1.0)).chain((1..=farthest).map(mean)).map(Some).collect();
-        curves.push(Curve { name: format!("thing {} displaced", thing + 1), points: displaced });
+        curves.push(Curve { name: format!("thing {} displaced", thing + 1), points: displaced, band: Band::new() });
         let absent = of(thing, Alteration::Absent).flat_map(|(_, &reward)| [(0.0, reward), (farthest as f64, reward)]);
-        curves.push(Curve { name: format!("thing {} absent", thing + 1), points: absent.map(Some).collect() });
+        curves.push(Curve {
+            name: format!("thing {} absent", thing + 1),
+            points: absent.map(Some).collect(),
+            band: Band::new(),
+        });
     }
     curves
 }

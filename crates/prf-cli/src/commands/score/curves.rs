@@ -7,7 +7,7 @@ use prf_core::io::FrameInfo;
 
 use crate::error::Result;
 use crate::plot::axis::Axis;
-use crate::plot::curve::{Curve, Diagram, Joined};
+use crate::plot::curve::{Band, Curve, Diagram, Joined, Shape};
 
 /// The rewards of every source, in order. Single pictures make one source together.
 #[derive(Default)]
@@ -93,9 +93,10 @@ impl Curves {
             x: if by_time { Axis::seconds(last) } else { Axis::frames(last) },
             y: Axis::rewards(rewards().fold(1.0, f64::min), rewards().fold(0.0, f64::max)),
             curves: &curves,
+            levels: &[],
             joined: Joined::Line,
         };
-        diagram.svg()
+        diagram.svg(Shape::Titled)
     }
 }
 
@@ -118,6 +119,6 @@ impl Source {
             })
         };
         let points = self.frames.iter().enumerate().map(point).collect();
-        Curve { name: self.name.clone(), points }
+        Curve { name: self.name.clone(), points, band: Band::new() }
     }
 }
