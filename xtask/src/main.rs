@@ -14,6 +14,7 @@ usage: cargo xtask setup                   fetch libtorch, if it is not there ye
        cargo xtask test                    set everything up and run every test
        cargo xtask compare [perception]    time prf against OpenCV and scikit-image, and write it down
        cargo xtask compare python          time the Python package against OpenCV, ALE, EnvPool and others
+       cargo xtask compare training        time the trainer against Stable-Baselines3 and PyTorch
        cargo prf ARGS…                     set libtorch up, build prf and run it with ARGS";
 
 /// Exit status of a command line that makes no sense.

@@ -35,6 +35,13 @@ pub fn widest_vectors(cpuinfo: &str) -> Option<&'static str> {
     }
 }
 
+/// Whether the processor multiplies bf16, which is when the trainer computes in it by itself.
+pub(super) fn multiplies_bf16() -> bool {
+    let cpuinfo = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let has = |key: &str, name: &str| field(&cpuinfo, key).is_some_and(|all| all.split(' ').any(|found| found == name));
+    has("flags", "avx512_bf16") || has("Features", "bf16")
+}
+
 fn field<'a>(cpuinfo: &'a str, name: &str) -> Option<&'a str> {
     let mut fields = cpuinfo.lines().filter_map(|line| line.split_once(':'));
     fields.find(|(key, _)| key.trim() == name).map(|(_, value)| value.trim())

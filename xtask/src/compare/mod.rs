@@ -17,6 +17,7 @@ mod python;
 mod setup;
 mod statistics;
 mod table;
+mod training;
 mod worker;
 
 pub use cases::{Case, Check, Peer, perception_cases};
@@ -36,6 +37,8 @@ pub enum Subject {
     Perception,
     /// The Python package: its calls, its rewards against OpenCV, its environments against others.
     Python,
+    /// The trainer, against Stable-Baselines3 and PyTorch.
+    Training,
 }
 
 impl Subject {
@@ -45,6 +48,7 @@ impl Subject {
             [] => Some(Subject::Perception),
             [word] if word == "perception" => Some(Subject::Perception),
             [word] if word == "python" => Some(Subject::Python),
+            [word] if word == "training" => Some(Subject::Training),
             _ => None,
         }
     }
@@ -58,6 +62,7 @@ pub fn run(root: &Path, subject: Subject) -> Result<ExitCode> {
     match subject {
         Subject::Perception => perception::run(root)?,
         Subject::Python => python::run(root)?,
+        Subject::Training => training::run(root)?,
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -27,10 +27,13 @@ pub(super) fn run(root: &Path) -> Result<()> {
     let folder = target(root).join("compare").join("perception");
     let (cases, gallery) = perception_cases();
     gallery.write(&folder, &cases)?;
-    let peers = setup::peers(root)?;
+    let (mut prf, mut peers) = (setup::prf(root)?, setup::peers(root)?);
+    for command in [&mut prf, &mut peers] {
+        setup::hold_to_one_thread(command.arg(&folder));
+    }
     let mut sides = Sides {
-        prf: Worker::start("the worker of prf-core", setup::prf(root)?, &folder)?,
-        peers: Worker::start("tests/compare/perception_worker.py", peers, &folder)?,
+        prf: Worker::start("the worker of prf-core", prf)?,
+        peers: Worker::start("tests/compare/perception_worker.py", peers)?,
         folder,
     };
     for case in &cases {

@@ -32,9 +32,7 @@ pub(super) fn run(root: &Path) -> Result<()> {
     gallery.write(&folder, &cases)?;
     let mut command = setup::package(root)?;
     command.arg(&folder).stdin(Stdio::null()).stdout(Stdio::piped());
-    for library in ["OMP", "OPENBLAS", "MKL"] {
-        command.env(format!("{library}_NUM_THREADS"), "1");
-    }
+    setup::hold_to_one_thread(&mut command);
     let mut child = command.spawn().context("can't start python_package.py")?;
     let mut lines = BufReader::new(child.stdout.take().context("a script without output")?).lines();
     let versions: Versions =

@@ -7,20 +7,47 @@ use std::process::{Command, Stdio};
 use anyhow::{Context, Result, ensure};
 use serde_json::Value;
 
-use crate::cargo;
 use crate::python::Python;
 use crate::venv::{Venv, target, with_first};
+use crate::{cargo, libtorch};
 
 /// Builds our worker.
 ///
 /// # Errors
 /// If cargo can't.
 pub(super) fn prf(root: &Path) -> Result<Command> {
+    example(root, "prf-core", "perception_worker")
+}
+
+/// Holds every library that a worker may load to one thread.
+pub(super) fn hold_to_one_thread(command: &mut Command) {
+    for library in ["OMP", "OPENBLAS", "MKL"] {
+        command.env(format!("{library}_NUM_THREADS"), "1");
+    }
+}
+
+/// Builds both workers that train what `config` says, each with as many threads as there are cores.
+///
+/// # Errors
+/// If libtorch can't be had, cargo or pip can't do their work, or there is no Python that serves.
+pub(super) fn training(root: &Path, config: &Path) -> Result<(Command, Command)> {
+    libtorch::ensure(root)?;
+    let mut prf = example(root, "prf-dqn", "training_worker")?;
+    let venv = fetched(root, "training", &["requirements-training.txt"])?;
+    install_package(root, &venv)?;
+    let mut peers = script(root, &venv, "training_worker.py");
+    prf.arg(config).arg(target(root).join("compare").join("runs"));
+    peers.arg(config);
+    Ok((prf, peers))
+}
+
+/// Builds an example, as fast as it can be.
+fn example(root: &Path, package: &str, name: &str) -> Result<Command> {
     let mut build = cargo();
-    build.current_dir(root).args(["build", "--release", "--package", "prf-core", "--example", "perception_worker"]);
+    build.current_dir(root).args(["build", "--release", "--package", package, "--example", name]);
     build.arg("--message-format=json-render-diagnostics").stdout(Stdio::piped());
     let output = build.spawn().and_then(std::process::Child::wait_with_output).context("can't start cargo")?;
-    ensure!(output.status.success(), "the worker of prf-core can't be built");
+    ensure!(output.status.success(), "the worker of {package} can't be built");
     let program = executable(&String::from_utf8_lossy(&output.stdout)).context("cargo did not say what it built")?;
     Ok(Command::new(program))
 }
@@ -46,12 +73,16 @@ pub(super) fn peers(root: &Path) -> Result<Command> {
 /// As [`peers`]; if the package can't be built.
 pub(super) fn package(root: &Path) -> Result<Command> {
     let venv = fetched(root, "python", &["requirements.txt", "requirements-python.txt"])?;
+    install_package(root, &venv)?;
+    Ok(script(root, &venv, "python_package.py"))
+}
+
+fn install_package(root: &Path, venv: &Venv) -> Result<()> {
     let mut pip = venv.pip("install");
     pip.args(["--no-build-isolation", "--no-deps", "--force-reinstall"]).arg(root.join("crates/prf-py"));
     // maturin is found there.
     pip.env("PATH", with_first(&venv.folder().join("bin"))?);
-    succeed(pip, "the Python package can't be built")?;
-    Ok(script(root, &venv, "python_package.py"))
+    succeed(pip, "the Python package can't be built")
 }
 
 /// A virtual environment with what files in `tests/compare` name.

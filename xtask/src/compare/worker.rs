@@ -19,12 +19,9 @@ pub(super) struct Worker {
 }
 
 impl Worker {
-    /// Starts it on a folder with cases; every library it may load is held to one thread.
-    pub(super) fn start(name: &'static str, mut command: Command, folder: &Path) -> Result<Worker> {
-        command.arg(folder).stdin(Stdio::piped()).stdout(Stdio::piped());
-        for library in ["OMP", "OPENBLAS", "MKL"] {
-            command.env(format!("{library}_NUM_THREADS"), "1");
-        }
+    /// Starts it.
+    pub(super) fn start(name: &'static str, mut command: Command) -> Result<Worker> {
+        command.stdin(Stdio::piped()).stdout(Stdio::piped());
         let mut child = command.spawn().with_context(|| format!("can't start {name}"))?;
         let input = child.stdin.take();
         let output = BufReader::new(child.stdout.take().context("a worker without output")?);
