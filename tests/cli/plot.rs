@@ -13,12 +13,13 @@ mod common;
 mod run_folders;
 
 use common::prf;
-use run_folders::{CONFIG, make_run};
+use run_folders::{CONFIG, make_run, save};
 
 /// Two seeds of one config and one of another.
 fn folder() -> TempDir {
     let folder = tempfile::tempdir().expect("a temporary folder can be made");
-    make_run(folder.path(), "ball-1", (1, CONFIG), &[(100, 0.0), (300, 2.0), (500, 3.0)]);
+    let first = make_run(folder.path(), "ball-1", (1, CONFIG), &[(100, 0.0), (300, 2.0), (500, 3.0)]);
+    save(&first, 500, false);
     make_run(folder.path(), "ball-2", (2, CONFIG), &[(100, 1.0), (500, 2.0)]);
     make_run(folder.path(), "fast-1", (1, &format!("{CONFIG}gamma = 0.9\n")), &[(200, 1.0), (400, 1.5)]);
     folder

@@ -14,7 +14,9 @@ use crate::printer::Format;
 pub(crate) use self::ck_plus::CkPlusArgs;
 pub(crate) use self::evidence::{EvidenceArgs, InspectArgs, TuneArgs};
 pub(crate) use self::play::{PlayArgs, PlayerArg, RecordingArgs, WorldsArgs};
-pub(crate) use self::runs::{Aggregate, Place, PlotArgs, Quantity, ReportArgs, RunsArgs};
+#[cfg(feature = "train")]
+pub(crate) use self::runs::{Aggregate, Place, Quantity};
+pub(crate) use self::runs::{PlotArgs, ReportArgs, RunsArgs};
 
 mod ck_plus;
 mod evidence;

@@ -14,9 +14,11 @@ use crate::error::Result;
 
 /// The whole canvas, and one for small screens.
 const WIDTH: u32 = 1800;
+#[cfg(feature = "train")]
 const NARROW_WIDTH: u32 = 800;
 /// The diagram's height without heading and legend.
 const DIAGRAM: u32 = 820;
+#[cfg(feature = "train")]
 const NARROW_DIAGRAM: u32 = 620;
 const ABOVE_LEGEND: u32 = 20;
 /// Title and subtitle.
@@ -60,8 +62,10 @@ pub(crate) enum Shape {
     /// A file of its own.
     Titled,
     /// A page that says what it is.
+    #[cfg(feature = "train")]
     Untitled,
     /// The same on a small screen.
+    #[cfg(feature = "train")]
     Narrow,
 }
 
@@ -104,7 +108,9 @@ impl Diagram<'_> {
     pub(crate) fn svg(&self, shape: Shape) -> Result<String> {
         let (width, diagram_height, margin) = match shape {
             Shape::Titled => (WIDTH, DIAGRAM, theme::MARGIN),
+            #[cfg(feature = "train")]
             Shape::Untitled => (WIDTH, DIAGRAM, 0),
+            #[cfg(feature = "train")]
             Shape::Narrow => (NARROW_WIDTH, NARROW_DIAGRAM, 0),
         };
         let heading_height = if shape == Shape::Titled { HEADING } else { 0 };

@@ -98,7 +98,10 @@ fn folder_name(runs: &[Run]) -> String {
 /// Dotted keys with their values as TOML has them.
 fn flat(config: &RunConfig) -> BTreeMap<String, String> {
     let mut values = BTreeMap::new();
-    let mut open = vec![(String::new(), Value::try_from(config).expect("a configuration is plain tables"))];
+    // By way of text, in which an f32 has no more digits than it was given.
+    let text = toml::to_string(config).expect("a configuration is plain tables");
+    let table = text.parse().expect("it was written as TOML");
+    let mut open = vec![(String::new(), Value::Table(table))];
     while let Some((key, value)) = open.pop() {
         match value {
             Value::Table(table) => {
