@@ -80,8 +80,8 @@ pub struct TrainConfig {
     /// Let the online network choose the action whose target value is bootstrapped (double DQN).
     #[serde(default = "default_double")]
     pub double: bool,
-    /// What the network computes in; parameters are learned in f32 with each. `auto` becomes `bf16` or `f32`, by what the
-    /// machine is good at, when a run begins.
+    /// What the network computes in: `f32`, `bf16`, or `auto`, which becomes one of them, by what the machine is good at, when a
+    /// run begins. Parameters are learned in f32 with each.
     #[serde(default)]
     pub precision: Precision,
     /// Give the network a value and an advantage stream (dueling, Wang et al. 2016).
