@@ -70,8 +70,11 @@ fn newest(run: &Path) -> PathBuf {
 
 /// Starts a run and waits until it has written its first checkpoint.
 fn start(folder: &Path) -> std::process::Child {
-    let mut command = Command::new(assert_cmd::cargo::cargo_bin!("prf"));
-    command.current_dir(folder).args(["train", "c.toml", "--out", "run", "--set", "train.steps=100000"]);
+    start_as(Command::new(assert_cmd::cargo::cargo_bin!("prf")).current_dir(folder), folder)
+}
+
+fn start_as(command: &mut Command, folder: &Path) -> std::process::Child {
+    command.args(["train", "c.toml", "--out", "run", "--set", "train.steps=100000"]);
     let child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().expect("prf starts");
     let deadline = Instant::now() + Duration::from_secs(240);
     let saved = |entry: std::io::Result<fs::DirEntry>| {
@@ -150,6 +153,28 @@ fn an_interrupted_run_is_saved_and_resumes_to_the_same_records() {
     assert_eq!(output.status.code(), Some(130), "{words}");
     assert!(words.contains("prf train c.toml --out run --resume --set train.steps=100000"), "{words}");
     resumes_like_an_uninterrupted_run(&folder);
+}
+
+#[test]
+fn a_run_outlives_its_terminal_only_if_it_was_told_to() {
+    for (before, goes_on) in [("trap '' HUP", true), (":", false)] {
+        let folder = folder();
+        let mut command = Command::new("sh");
+        command.current_dir(folder.path()).arg("-c").arg(format!("{before}; exec \"$0\" \"$@\""));
+        let mut child = start_as(command.arg(assert_cmd::cargo::cargo_bin!("prf")), folder.path());
+        let written = metrics_lines(&folder.path().join("run"));
+        signal(&child, "-HUP");
+        if goes_on {
+            // It goes on, and the next signal is heeded.
+            let deadline = Instant::now() + Duration::from_secs(240);
+            while metrics_lines(&folder.path().join("run")) < written + 2 {
+                assert!(Instant::now() < deadline && child.try_wait().expect("it is ours").is_none(), "it has ended");
+                std::thread::sleep(Duration::from_millis(20));
+            }
+            signal(&child, "-TERM");
+        }
+        assert_eq!(child.wait_with_output().expect("prf ends").status.code(), Some(130));
+    }
 }
 
 #[test]

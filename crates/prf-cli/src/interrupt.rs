@@ -13,9 +13,17 @@ impl Interrupt {
     /// From now on the signals no longer end the program, and a file that reaches the limit of its size (`ulimit -f`) is an error
     /// of the write and no end of the program either. To be called once.
     pub(crate) fn listen() -> Result<Interrupt> {
-        #[cfg(unix)]
-        signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default())?;
         let came = Arc::new(AtomicBool::new(false));
+        #[cfg(unix)]
+        {
+            use signal_hook::consts::{SIGHUP, SIGTERM, SIGXFSZ};
+            signal_hook::flag::register(SIGXFSZ, Arc::default())?;
+            signal_hook::flag::register(SIGTERM, Arc::clone(&came))?;
+            // `nohup` has it ignored, so that the run outlives its terminal.
+            if !is_ignored(SIGHUP) {
+                signal_hook::flag::register(SIGHUP, Arc::clone(&came))?;
+            }
+        }
         let handle = Arc::clone(&came);
         ctrlc::set_handler(move || handle.store(true, Ordering::Relaxed))?;
         Ok(Interrupt(came))
@@ -25,4 +33,13 @@ impl Interrupt {
     pub(crate) fn came(&self) -> bool {
         self.0.load(Ordering::Relaxed)
     }
+}
+
+/// Whether whoever started the program wants it to ignore a signal, as Linux tells; elsewhere nobody is taken to.
+#[cfg(unix)]
+fn is_ignored(signal: std::ffi::c_int) -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let mask = mask.and_then(|digits| u64::from_str_radix(digits.trim(), 16).ok());
+    mask.is_some_and(|mask| mask >> (signal - 1) & 1 == 1)
 }
