@@ -117,6 +117,7 @@ pub trait Recorder {
 
 /// Where the time of a run went.
 #[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
+#[serde(default)]
 pub struct TimeShares {
     /// Batched forward passes that choose actions.
     pub acting_s: f64,
