@@ -32,7 +32,7 @@ pub enum Event<'a> {
     Evaluation(EvaluationRecord),
     /// A step of an episode that is recorded step by step.
     #[serde(skip)]
-    Step(StepRecord<'a>),
+    Step(&'a StepRecord<'a>),
     /// Where the run stands; many a second, for people who watch.
     #[serde(skip)]
     Progress(Progress),

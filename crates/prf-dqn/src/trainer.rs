@@ -235,7 +235,7 @@ impl Trainer {
             if let Some(episode) = self.recording.episode(index) {
                 let place = Place { kind: EpisodeKind::Training, trained_steps: self.counters.steps, episode, epsilon };
                 let record = step_record(&lane.task, action, &step, &lane.episode, place);
-                timed(&mut self.time.records_s, || tell(&mut self.records, recorder, &Event::Step(record)))?;
+                timed(&mut self.time.records_s, || tell(&mut self.records, recorder, &Event::Step(&record)))?;
             }
             if step.status.is_over() {
                 self.counters.finish(lane.episode);

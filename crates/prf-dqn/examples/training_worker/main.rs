@@ -73,7 +73,7 @@ fn say(line: &serde_json::Value) -> std::io::Result<()> {
 /// A piece of work that goes on from call to call.
 enum Case {
     Bare { learner: Box<Learner>, inputs: prf_dqn::learner::Inputs },
-    Sample { replay: Replay, reach: Reach, rng: Box<ChaCha8Rng>, batch: Batch, size: usize },
+    Sample { replay: Replay, reach: Reach, rng: Box<ChaCha8Rng>, batch: Box<Batch>, size: usize },
     Run { session: Session, of_updates: bool },
 }
 
@@ -127,7 +127,7 @@ impl Case {
             replay.push(row % config.train.environments, &frame, 0, 0.5, outcome);
         }
         let reach = Reach { steps: config.train.n_step, gamma: config.train.gamma };
-        Self::Sample { replay, reach, rng: Box::new(rng), batch: Batch::default(), size: config.train.batch_size }
+        Self::Sample { replay, reach, rng: Box::new(rng), batch: Box::default(), size: config.train.batch_size }
     }
 
     /// Calls made and their nanoseconds.

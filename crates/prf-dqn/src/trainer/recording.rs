@@ -98,7 +98,7 @@ impl Trainer {
                     let step = task.step(action)?;
                     so_far.add(&step);
                     let record = step_record(task, action, &step, &so_far, place);
-                    tell(records, recorder, &Event::Step(record))?;
+                    tell(records, recorder, &Event::Step(&record))?;
                 }
             }
             Ok(())

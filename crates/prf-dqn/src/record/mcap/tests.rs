@@ -58,7 +58,7 @@ fn steps(recorder: &mut McapRecorder, steps: std::ops::Range<u32>) {
             epsilon: 0.0,
             last: false,
         };
-        recorder.record(&Event::Step(record)).expect("record");
+        recorder.record(&Event::Step(&record)).expect("record");
     }
 }
 

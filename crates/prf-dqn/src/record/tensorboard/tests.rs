@@ -53,7 +53,7 @@ fn a_record_is_framed_as_tensorflow_does() {
     assert_eq!(framed[..8], [9, 0, 0, 0, 0, 0, 0, 0]);
     assert_eq!(framed[12..21], *b"123456789");
     let crc: u32 = 0xe306_9283;
-    let masked = ((crc >> 15) | (crc << 17)).wrapping_add(0xa282_ead8);
+    let masked = crc.rotate_right(15).wrapping_add(0xa282_ead8);
     assert_eq!(framed[21..], masked.to_le_bytes());
     assert_eq!(tfrecord::first(&framed), Some(&b"123456789"[..]));
 }
