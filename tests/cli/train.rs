@@ -156,25 +156,23 @@ fn an_interrupted_run_is_saved_and_resumes_to_the_same_records() {
 }
 
 #[test]
-fn a_run_outlives_its_terminal_only_if_it_was_told_to() {
-    for (before, goes_on) in [("trap '' HUP", true), (":", false)] {
-        let folder = folder();
-        let mut command = Command::new("sh");
-        command.current_dir(folder.path()).arg("-c").arg(format!("{before}; exec \"$0\" \"$@\""));
-        let mut child = start_as(command.arg(assert_cmd::cargo::cargo_bin!("prf")), folder.path());
-        let written = metrics_lines(&folder.path().join("run"));
-        signal(&child, "-HUP");
-        if goes_on {
-            // It goes on, and the next signal is heeded.
-            let deadline = Instant::now() + Duration::from_secs(240);
-            while metrics_lines(&folder.path().join("run")) < written + 2 {
-                assert!(Instant::now() < deadline && child.try_wait().expect("it is ours").is_none(), "it has ended");
-                std::thread::sleep(Duration::from_millis(20));
-            }
-            signal(&child, "-TERM");
-        }
-        assert_eq!(child.wait_with_output().expect("prf ends").status.code(), Some(130));
+fn a_run_outlives_its_terminal_if_it_was_told_to() {
+    let folder = folder();
+    let run = folder.path().join("run");
+    let mut command = Command::new("sh");
+    // What `nohup` does.
+    command.current_dir(folder.path()).args(["-c", "trap '' HUP; exec \"$0\" \"$@\""]);
+    let mut child = start_as(command.arg(assert_cmd::cargo::cargo_bin!("prf")), folder.path());
+    let written = metrics_lines(&run);
+    signal(&child, "-HUP");
+    let deadline = Instant::now() + Duration::from_secs(240);
+    while metrics_lines(&run) < written + 2 {
+        assert!(Instant::now() < deadline, "the run stands still");
+        assert!(child.try_wait().expect("it is ours").is_none(), "it has ended");
+        std::thread::sleep(Duration::from_millis(20));
     }
+    signal(&child, "-TERM");
+    assert_eq!(child.wait_with_output().expect("prf ends").status.code(), Some(130));
 }
 
 #[test]

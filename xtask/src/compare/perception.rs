@@ -27,7 +27,7 @@ pub(super) fn run(root: &Path) -> Result<()> {
     let folder = target(root).join("compare").join("perception");
     let (cases, gallery) = perception_cases();
     gallery.write(&folder, &cases)?;
-    let (mut prf, mut peers) = (setup::prf(root)?, setup::peers(root)?);
+    let (mut peers, mut prf) = (setup::peers(root)?, setup::prf(root)?);
     for command in [&mut prf, &mut peers] {
         setup::hold_to_one_thread(command.arg(&folder));
     }

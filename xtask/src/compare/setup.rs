@@ -31,10 +31,10 @@ pub(super) fn hold_to_one_thread(command: &mut Command) {
 /// # Errors
 /// If libtorch can't be had, cargo or pip can't do their work, or there is no Python that serves.
 pub(super) fn training(root: &Path, config: &Path) -> Result<(Command, Command)> {
-    libtorch::ensure(root)?;
-    let mut prf = example(root, "prf-dqn", "training_worker")?;
     let venv = fetched(root, "training", &["requirements-training.txt"])?;
     install_package(root, &venv)?;
+    libtorch::ensure(root)?;
+    let mut prf = example(root, "prf-dqn", "training_worker")?;
     let mut peers = script(root, &venv, "training_worker.py");
     prf.arg(config).arg(target(root).join("compare").join("runs"));
     peers.arg(config);
