@@ -12,7 +12,6 @@ use std::path::Path;
 
 use prf_core::{Goal, io};
 use prf_dqn::checkpoint::{CheckpointStore, MODEL_FILE, Model};
-use prf_dqn::compute::Compute;
 use prf_dqn::config::RunConfig;
 use prf_dqn::learner::greedy_actions;
 use prf_dqn::run_dir::RunDir;
@@ -73,8 +72,7 @@ fn play(run: &Path) -> Result<(Expression, Played), Box<dyn Error>> {
     let goal = config.reward.goal.as_ref().map(|goal| io::read_frame(run.join(goal))).transpose()?.map(Goal::from);
     let mut task = Task::new(&config.task(), goal.as_ref())?;
     let newest = CheckpointStore::list(run)?.pop().ok_or_else(|| format!("{} has no checkpoint", run.display()))?;
-    let network = Model::read(&newest.join(MODEL_FILE))?
-        .network(Compute { device: tch::Device::Cpu, precision: config.train.precision })?;
+    let network = Model::read(&newest.join(MODEL_FILE))?.network(&config.train.compute(tch::Device::Cpu)?)?;
 
     let names = task.spec().actions;
     let (mut actions, mut rewards) = (Vec::new(), Vec::new());

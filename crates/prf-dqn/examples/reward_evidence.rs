@@ -14,7 +14,7 @@ use prf_core::{
     CellSize, DirectDescriptor, DistanceScale, Frame, HogParams, Norm, RewardParams, TaskDescriptor, spearman,
 };
 use prf_dqn::checkpoint::Model;
-use prf_dqn::compute::Compute;
+use prf_dqn::compute::{Compute, Precision};
 use prf_dqn::evaluate::episode_seeds;
 use prf_dqn::learner::greedy_actions;
 use prf_envs::players::{Oracle, Player, Random};
@@ -128,7 +128,7 @@ fn play(player: &mut dyn Player, episodes: usize, limit_steps: u32, every: u32) 
 
 /// The same for the greedy policy of a model.
 fn play_model(path: &Path, episodes: usize, every: u32) -> Result<Vec<State>, Box<dyn Error>> {
-    let network = Model::read(path)?.network(Compute::PLAIN)?;
+    let network = Model::read(path)?.network(&Compute::new(tch::Device::Cpu, Precision::F32, 0)?)?;
     let config = TaskConfig {
         env: EnvConfig { limit_steps: 1000, ..EnvConfig::new("breakout") },
         reward: RewardConfig::variable(),

@@ -4,7 +4,8 @@ use prf_core::Error as ParamError;
 use prf_envs::{EnvConfig, RewardConfig, StateConfig, TaskConfig};
 use serde::{Deserialize, Serialize};
 
-use crate::compute::Precision;
+use crate::compute::{Compute, Precision};
+use crate::error::Result;
 use crate::learner::LearnerSettings;
 use crate::replay::{Reach, Replay};
 
@@ -87,7 +88,7 @@ pub struct TrainConfig {
     /// Give the network a value and an advantage stream (dueling, Wang et al. 2016).
     #[serde(default)]
     pub dueling: bool,
-    /// CPU threads of libtorch; 0 takes every core. Part of what makes a run repeatable.
+    /// CPU threads of the network; 0 takes every core. Part of what makes a run repeatable.
     #[serde(default)]
     pub threads: usize,
     /// Steps between checkpoints.
@@ -251,6 +252,14 @@ impl TrainConfig {
     pub fn learner(&self) -> LearnerSettings {
         let Self { double, reward_scale, target_every_updates, .. } = *self;
         LearnerSettings { double, reward_scale, target_every_updates }
+    }
+
+    /// Where and how its network computes.
+    ///
+    /// # Errors
+    /// [`Error::Threads`](crate::Error::Threads) when the system gives no more threads.
+    pub fn compute(&self, device: tch::Device) -> Result<Compute> {
+        Compute::new(device, self.precision, self.threads)
     }
 
     /// How far a transition reaches.

@@ -60,6 +60,14 @@ pub enum Error {
         /// The reward.
         reward: f32,
     },
+    /// The system gives no threads.
+    #[error("cannot start {threads} threads for the network: {reason}")]
+    Threads {
+        /// How many were wanted.
+        threads: usize,
+        /// Why.
+        reason: String,
+    },
     /// A device that this libtorch or this machine does not offer.
     #[error("device {got} is not available, expected {expected}")]
     Device {

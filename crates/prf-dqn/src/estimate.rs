@@ -6,7 +6,6 @@ use prf_core::Goal;
 use prf_envs::Task;
 use prf_envs::rng::stream;
 
-use crate::compute::Compute;
 use crate::config::RunConfig;
 use crate::error::Result;
 use crate::learner::Learner;
@@ -38,7 +37,7 @@ impl Estimate {
         let mut task = Task::new(&config.task(), goal)?;
         let architecture = architecture(&task, train.dueling)?;
         let frame_len = task.observation().len();
-        let compute = Compute { device, precision: train.precision };
+        let compute = train.compute(device)?;
         let mut learner = Learner::new(architecture, train.learner(), compute, &mut stream(0, "estimate", 0))?;
 
         let count = train.batch_size;

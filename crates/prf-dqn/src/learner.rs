@@ -1,11 +1,13 @@
 //! One update of the network: double DQN targets, Huber loss, Adam.
 
+use std::sync::Arc;
+
 use prf_envs::rng::ChaCha8Rng;
-use tch::{Kind, Reduction, Tensor, no_grad};
+use tch::{Kind, Reduction, Tensor};
 
 use crate::compute::Compute;
 use crate::error::Result;
-use crate::network::{Architecture, QNetwork, tensor_to_vec};
+use crate::network::{Architecture, QNetwork, Trace, tensor_to_vec};
 use crate::optimizer::Adam;
 use crate::replay::Batch;
 
@@ -34,9 +36,9 @@ pub struct LearnerSettings {
 /// A batch of n transitions as tensors.
 #[derive(Debug)]
 pub struct Inputs {
-    /// Pictures, shape [n, 1, h, w].
+    /// Pictures, as the network takes them.
     states: Tensor,
-    /// Pictures, shape [n, 1, h, w].
+    /// Pictures, as the network takes them.
     next_states: Tensor,
     /// Shape [n, 1].
     actions: Tensor,
@@ -48,6 +50,19 @@ pub struct Inputs {
     weights: Option<Tensor>,
 }
 
+impl Inputs {
+    fn share(&self) -> Self {
+        Self {
+            states: self.states.shallow_clone(),
+            next_states: self.next_states.shallow_clone(),
+            actions: self.actions.shallow_clone(),
+            rewards: self.rewards.shallow_clone(),
+            discounts: self.discounts.shallow_clone(),
+            weights: self.weights.as_ref().map(Tensor::shallow_clone),
+        }
+    }
+}
+
 impl Learner {
     /// A learner with a newly drawn network.
     pub fn new(
@@ -56,20 +71,16 @@ impl Learner {
         compute: Compute,
         rng: &mut ChaCha8Rng,
     ) -> Result<Self> {
-        let online = QNetwork::new(architecture, compute, rng)?;
-        Self::from_network(online, settings, compute)
-    }
-
-    fn from_network(online: QNetwork, settings: LearnerSettings, compute: Compute) -> Result<Self> {
+        let online = QNetwork::new(architecture, &compute, rng)?;
         let values = online.to_vec()?;
-        let target = QNetwork::from_flat(online.architecture().clone(), &values, compute)?;
+        let target = QNetwork::from_flat(online.architecture().clone(), &values, &compute)?;
         let optimizer = Adam::new(values.len(), compute.device)?;
         Ok(Self { online, target, optimizer, updates: 0, settings, compute })
     }
 
     /// Where and how its networks compute.
-    pub fn compute(&self) -> Compute {
-        self.compute
+    pub fn compute(&self) -> &Compute {
+        &self.compute
     }
 
     /// Learns from a batch by its loss: the mean, weighted by the batch's weights if it has any, of the Huber loss (δ = 1) of
@@ -78,17 +89,25 @@ impl Learner {
     ///
     /// From a loss that is infinite or NaN nothing is learned: the network stays as it was.
     pub fn update(&mut self, batch: &Batch, learning_rate: f64) -> Result<Update> {
-        let inputs = self.inputs(batch)?;
-        self.update_from(&inputs, learning_rate)
+        let pair = Arc::clone(&self.compute.pair);
+        pair.work(move || {
+            let inputs = self.inputs(batch)?;
+            self.learn(inputs, learning_rate)
+        })
     }
 
     /// A batch as tensors on the learner's device.
     pub fn inputs(&self, batch: &Batch) -> Result<Inputs> {
         let device = self.compute.device;
         let numbers = |values: &[f32]| Tensor::f_from_slice(values)?.f_to_device(device);
+        let [of_states, of_next_states] = [self.online.layers(), self.online.layers()];
+        let (states, next_states) = self
+            .compute
+            .pair
+            .join(move || of_states.pictures(&batch.states), move || of_next_states.pictures(&batch.next_states));
         Ok(Inputs {
-            states: self.online.pictures(&batch.states, batch.len())?,
-            next_states: self.online.pictures(&batch.next_states, batch.len())?,
+            states: states?,
+            next_states: next_states?,
             actions: Tensor::f_from_slice(&batch.actions)?.f_to_device(device)?.f_unsqueeze(1)?,
             rewards: numbers(&batch.rewards)?.f_mul_scalar(self.settings.reward_scale)?,
             discounts: numbers(&batch.discounts)?,
@@ -98,37 +117,56 @@ impl Learner {
 
     /// As [`update`](Learner::update), from what [`inputs`](Learner::inputs) gave.
     pub fn update_from(&mut self, inputs: &Inputs, learning_rate: f64) -> Result<Update> {
-        let targets = no_grad(|| self.targets(inputs))?;
-        let values = self.online.forward(&inputs.states)?.f_gather(1, &inputs.actions, false)?.f_squeeze_dim(1)?;
-        let mean_loss = match &inputs.weights {
-            None => values.f_smooth_l1_loss(&targets, Reduction::Mean, 1.0)?,
-            Some(weights) => {
-                values.f_smooth_l1_loss(&targets, Reduction::None, 1.0)?.f_mul(weights)?.f_mean(Kind::Float)?
-            }
-        };
+        let (pair, inputs) = (Arc::clone(&self.compute.pair), inputs.share());
+        pair.work(move || self.learn(inputs, learning_rate))
+    }
+
+    fn learn(&mut self, inputs: Inputs, learning_rate: f64) -> Result<Update> {
+        let pair = Arc::clone(&self.compute.pair);
+        let (trace, targets) = self.forward(&inputs)?;
+        let values = trace.values.f_gather(1, &inputs.actions, false)?.f_squeeze_dim(1)?;
+        let losses = values.f_smooth_l1_loss(&targets, Reduction::None, 1.0)?;
+        let mean_loss = of_weight(losses, inputs.weights.as_ref())?.f_mean(Kind::Float)?;
         let loss = mean_loss.f_double_value(&[])? as f32;
         if loss.is_finite() {
-            let gradients = Tensor::f_run_backward(&[&mean_loss], self.online.leaves(), false, false)?;
-            self.optimizer.step(self.online.parameters_mut(), &gradients, learning_rate)?;
+            // The derivative of the Huber loss is the error itself, but not beyond ±1.
+            let gradient = values.f_sub(&targets)?.f_clamp_(-1.0, 1.0)?.f_div_scalar_(values.numel() as f64)?;
+            let gradient = of_weight(gradient, inputs.weights.as_ref())?.f_unsqueeze(1)?;
+            let gradient = trace.values.f_zeros_like()?.f_scatter_(1, &inputs.actions, &gradient)?;
+            let lengths = self.online.architecture().lengths();
+            let parts = self.optimizer.begin(self.online.parameters(), &lengths, learning_rate)?;
+            let take = parts.into_iter().map(|part| move |gradients: [Tensor; 2]| part.step(&gradients)).collect();
+            self.online.layers().backward(trace, &gradient, &pair, take)?;
             self.updates += 1;
             if self.updates.is_multiple_of(self.settings.target_every_updates) {
                 self.target.copy_from(&self.online)?;
             }
         }
-        Ok(Update { loss, values: values.f_detach()?, targets })
+        Ok(Update { loss, values, targets })
     }
 
-    fn targets(&self, inputs: &Inputs) -> Result<Tensor> {
-        let next_states = &inputs.next_states;
-        let next_values = self.target.forward(next_states)?;
+    /// The forward pass to learn from, and the targets of its values.
+    fn forward(&self, inputs: &Inputs) -> Result<(Trace, Tensor)> {
+        let pair = &self.compute.pair;
+        let [states, next_states] = [&inputs.states, &inputs.next_states].map(Tensor::shallow_clone);
+        let [online, target] = [self.online.layers(), self.target.layers()];
+        let (trace, next) = pair.join(move || online.forward(&states), move || target.forward(&next_states));
+        let next_values = next?.values;
         let best = if self.settings.double {
-            let actions = self.online.forward(next_states)?.f_argmax(1, true)?;
+            let actions = self.online.values(&inputs.next_states)?.f_argmax(1, true)?;
             next_values.f_gather(1, &actions, false)?.f_squeeze_dim(1)?
         } else {
             next_values.f_amax([1i64], false)?
         };
-        Ok(inputs.rewards.f_addcmul(&inputs.discounts, &best)?)
+        Ok((trace?, inputs.rewards.f_addcmul(&inputs.discounts, &best)?))
     }
+}
+
+fn of_weight(values: Tensor, weights: Option<&Tensor>) -> Result<Tensor> {
+    Ok(match weights {
+        None => values,
+        Some(weights) => values.f_mul(weights)?,
+    })
 }
 
 /// What an update found, before it changed anything.
@@ -172,7 +210,7 @@ mod tests {
     use prf_envs::rng::{stream, unit_f32};
 
     fn learner(double: bool, dueling: bool) -> Learner {
-        learner_in(double, dueling, Compute::PLAIN)
+        learner_in(double, dueling, Compute::plain())
     }
 
     fn learner_in(double: bool, dueling: bool, compute: Compute) -> Learner {
@@ -195,52 +233,6 @@ mod tests {
     }
 
     #[test]
-    fn parameters_are_those_of_the_published_network() {
-        let architecture = Architecture { input: [84, 84], actions: 3, dueling: false };
-        let count: i64 = architecture.parameters().iter().map(|(_, shape)| shape.iter().product::<i64>()).sum();
-        // 32·(8·8+1) + 64·(32·16+1) + 64·(64·9+1) + 512·(3136+1) + 3·(512+1)
-        assert_eq!(count, 2_080 + 32_832 + 36_928 + 1_606_144 + 1_539);
-        assert_eq!(Architecture::smallest_input(), 36);
-    }
-
-    #[test]
-    fn a_dueling_network_has_two_streams_of_512() {
-        let architecture = Architecture { input: [84, 84], actions: 3, dueling: true };
-        let count: i64 = architecture.parameters().iter().map(|(_, shape)| shape.iter().product::<i64>()).sum();
-        // The same convolutions, then twice 512·(3136+1), with 1·(512+1) for the value and 3·(512+1) for the advantages.
-        assert_eq!(count, 2_080 + 32_832 + 36_928 + 2 * 1_606_144 + 513 + 1_539);
-    }
-
-    #[test]
-    fn the_values_of_a_dueling_network_are_v_plus_a_minus_its_mean() {
-        let architecture = Architecture { input: [36, 36], actions: 2, dueling: true };
-        let shapes = architecture.parameters();
-        let mut values: Vec<f32> =
-            shapes.iter().flat_map(|(_, shape)| vec![0.0; shape.iter().product::<i64>() as usize]).collect();
-        // Every hidden unit is 1, whatever the picture: the value is 512 · 0.01 + 0.5, the advantages are 512 · 0.02 + 1 and 3.
-        let mut rest = values.as_mut_slice();
-        for (name, shape) in &shapes {
-            let (layer, tail) = rest.split_at_mut(shape.iter().product::<i64>() as usize);
-            match name.as_str() {
-                "value.hidden.bias" | "advantage.hidden.bias" => layer.fill(1.0),
-                "value.output.weight" => layer.fill(0.01),
-                "value.output.bias" => layer.fill(0.5),
-                "advantage.output.weight" => layer[..512].fill(0.02),
-                "advantage.output.bias" => layer.copy_from_slice(&[1.0, 3.0]),
-                _ => {}
-            }
-            rest = tail;
-        }
-        let network = QNetwork::from_flat(architecture, &values, Compute::PLAIN).expect("network");
-        let found = network.q_values(&[7; 36 * 36], 1).expect("values");
-        let (value, advantages) = (5.62, [11.24, 3.0]);
-        for (found, advantage) in found.iter().zip(advantages) {
-            let expected = value + advantage - (11.24 + 3.0) / 2.0;
-            assert!((found - expected).abs() < 1e-4, "{found} should be {expected}");
-        }
-    }
-
-    #[test]
     fn loss_is_the_huber_loss_of_the_double_dqn_target() {
         for (double, dueling, weights) in [
             (false, false, vec![]),
@@ -252,12 +244,11 @@ mod tests {
             let batch = Batch { weights: weights.clone(), ..batch() };
             // A target network that differs, so that choosing and valuing the action can be told apart.
             let other =
-                QNetwork::new(learner.online.architecture().clone(), Compute::PLAIN, &mut stream(9, "network", 0));
+                QNetwork::new(learner.online.architecture().clone(), &Compute::plain(), &mut stream(9, "network", 0));
             learner.target = other.expect("network");
             let now = learner.online.q_values(&batch.states, 4).expect("values");
             let online = learner.online.q_values(&batch.next_states, 4).expect("values");
-            let pictures = learner.online.pictures(&batch.next_states, 4).expect("pictures");
-            let slow = tensor_to_vec(&learner.target.forward(&pictures).expect("forward")).expect("values");
+            let slow = learner.target.q_values(&batch.next_states, 4).expect("values");
             let chooser = if double { &online } else { &slow };
             let mut expected = 0.0;
             let mut errors = Vec::new();
@@ -300,7 +291,7 @@ mod tests {
     #[test]
     fn bf16_learns_nearly_the_same_and_keeps_its_parameters_exact() {
         let mut plain = learner(true, false);
-        let mut short = learner_in(true, false, Compute { precision: Precision::Bf16, ..Compute::PLAIN });
+        let mut short = learner_in(true, false, Compute { precision: Precision::Bf16, ..Compute::plain() });
         assert_eq!(short.online.to_vec().expect("values"), plain.online.to_vec().expect("values"));
         let (mut first, mut last) = (0.0, [0.0f32; 2]);
         for update in 0..30 {

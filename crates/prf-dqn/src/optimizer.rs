@@ -1,6 +1,6 @@
 //! Adam (Kingma and Ba, 2014) over a network's flat parameters, with its moments in the open so that they can be saved.
 
-use tch::{Device, Kind, Tensor, no_grad};
+use tch::{Device, Kind, Tensor};
 
 use crate::error::Result;
 use crate::network::{Parameters, tensor_to_vec};
@@ -46,31 +46,55 @@ impl Adam {
         Ok((tensor_to_vec(&self.first)?, tensor_to_vec(&self.second)?, self.steps))
     }
 
-    /// One step: `parameters` move against `gradients`, which together have as many elements in the same order.
-    pub(crate) fn step(&mut self, parameters: &mut Parameters, gradients: &[Tensor], learning_rate: f64) -> Result<()> {
+    /// Begins one step, which is taken part by part: `lengths` numbers of the parameters each, in their order.
+    pub(crate) fn begin(&mut self, parameters: &Parameters, lengths: &[i64], learning_rate: f64) -> Result<Vec<Part>> {
         self.steps += 1;
         let size = StepSize {
             rate: learning_rate / (1.0 - BETA1.powf(self.steps as f64)),
             second_correction: (1.0 - BETA2.powf(self.steps as f64)).sqrt(),
         };
-        if parameters.flat.device() == Device::Cpu {
-            fused::step(parameters, &mut self.first, &mut self.second, gradients, size)
+        let mut start = 0;
+        let parts = lengths.iter().map(|&length| {
+            let part = |whole: &Tensor| whole.f_narrow(0, start, length);
+            let parameters = Parameters {
+                flat: part(&parameters.flat)?,
+                rounded: parameters.rounded.as_ref().map(part).transpose()?,
+            };
+            let part = Part { parameters, first: part(&self.first)?, second: part(&self.second)?, size };
+            start += length;
+            Ok(part)
+        });
+        parts.collect()
+    }
+}
+
+/// Some of the parameters and their moments, as handles to where they lie, in a step that has begun.
+#[derive(Debug)]
+pub(crate) struct Part {
+    parameters: Parameters,
+    first: Tensor,
+    second: Tensor,
+    size: StepSize,
+}
+
+impl Part {
+    /// Moves the parameters against `gradients`, which together have as many elements in the same order.
+    pub(crate) fn step(mut self, gradients: &[Tensor]) -> Result<()> {
+        if self.parameters.flat.device() == Device::Cpu {
+            fused::step(&mut self.parameters, &mut self.first, &mut self.second, gradients, self.size)
         } else {
-            no_grad(|| {
-                self.step_by_tensors(&mut parameters.flat, gradients, size)?;
-                parameters.round()
-            })
+            self.step_by_tensors(gradients)
         }
     }
 
-    fn step_by_tensors(&mut self, parameters: &mut Tensor, gradients: &[Tensor], size: StepSize) -> Result<()> {
+    fn step_by_tensors(&mut self, gradients: &[Tensor]) -> Result<()> {
         let flat: Vec<Tensor> = gradients.iter().map(|gradient| gradient.f_flatten(0, -1)).collect::<Result<_, _>>()?;
         let gradient = Tensor::f_cat(&flat, 0)?.f_to_kind(Kind::Float)?;
         let _ = self.first.f_lerp_(&gradient, 1.0 - BETA1)?;
         let _ = self.second.f_mul_scalar_(BETA2)?.f_addcmul_(&gradient, &(&gradient * (1.0 - BETA2)))?;
-        let denominator = self.second.f_sqrt()?.f_div_scalar_(size.second_correction)?.f_add_scalar_(EPSILON)?;
-        let _ = parameters.f_sub_(&(self.first.f_div(&denominator)?.f_mul_scalar_(size.rate)?))?;
-        Ok(())
+        let denominator = self.second.f_sqrt()?.f_div_scalar_(self.size.second_correction)?.f_add_scalar_(EPSILON)?;
+        let _ = self.parameters.flat.f_sub_(&(self.first.f_div(&denominator)?.f_mul_scalar_(self.size.rate)?))?;
+        self.parameters.round()
     }
 }
 
@@ -80,29 +104,22 @@ mod tests {
     use crate::compute::{Compute, Precision};
 
     fn parameters_after(steps: &[(Vec<f32>, f64)], fused: bool) -> (Vec<f32>, Adam) {
-        let (parameters, adam) = computed_after(steps, fused, Compute::PLAIN);
+        let (parameters, adam) = computed_after(steps, fused, &Compute::plain());
         assert!(parameters.rounded.is_none());
         (tensor_to_vec(&parameters.flat).expect("values"), adam)
     }
 
-    fn computed_after(steps: &[(Vec<f32>, f64)], fused: bool, compute: Compute) -> (Parameters, Adam) {
+    fn computed_after(steps: &[(Vec<f32>, f64)], fused: bool, compute: &Compute) -> (Parameters, Adam) {
         let count = steps[0].0.len();
-        let mut parameters = Parameters::new(&vec![1.0f32; count], compute).expect("parameters");
+        let parameters = Parameters::new(&vec![1.0f32; count], compute).expect("parameters");
         let mut adam = Adam::new(count, Device::Cpu).expect("adam");
         for (gradient, rate) in steps {
             let (head, tail) = gradient.split_at(count / 3);
             let parts = [head, tail].map(|part| Tensor::from_slice(part).to_kind(compute.kind()));
-            if fused {
-                adam.step(&mut parameters, &parts, *rate).expect("step");
-            } else {
-                adam.steps += 1;
-                let size = StepSize {
-                    rate: rate / (1.0 - BETA1.powf(adam.steps as f64)),
-                    second_correction: (1.0 - BETA2.powf(adam.steps as f64)).sqrt(),
-                };
-                adam.step_by_tensors(&mut parameters.flat, &parts, size).expect("step");
-                parameters.round().expect("rounded");
-            }
+            let lengths = [count as i64];
+            let mut part = adam.begin(&parameters, &lengths, *rate).expect("begin").pop().expect("a part");
+            let step = if fused { part.step(&parts) } else { part.step_by_tensors(&parts) };
+            step.expect("step");
         }
         (parameters, adam)
     }
@@ -145,8 +162,8 @@ mod tests {
     #[test]
     fn rounded_gradients_move_parameters_that_are_rounded_as_libtorch_does() {
         let steps: Vec<_> = (0..5).map(|step| (gradients(300_007, step), 1e-3)).collect();
-        let compute = Compute { precision: Precision::Bf16, ..Compute::PLAIN };
-        let [fused, plain] = [true, false].map(|fused| computed_after(&steps, fused, compute).0);
+        let compute = Compute { precision: Precision::Bf16, ..Compute::plain() };
+        let [fused, plain] = [true, false].map(|fused| computed_after(&steps, fused, &compute).0);
         let worst = (&fused.flat - &plain.flat).abs().max().double_value(&[]);
         assert!(worst < 1e-6, "largest difference {worst}");
         let rounded = fused.rounded.expect("bf16");
@@ -171,9 +188,14 @@ mod tests {
         let (half, adam) = parameters_after(&steps[..2], true);
         let (first, second, count) = adam.to_parts().expect("parts");
         let mut adam = Adam::restore(&first, &second, count, Device::Cpu).expect("restore");
-        let mut parameters = Parameters::new(&half, Compute::PLAIN).expect("parameters");
+        let parameters = Parameters::new(&half, &Compute::plain()).expect("parameters");
         for (gradient, rate) in &steps[2..] {
-            adam.step(&mut parameters, &[Tensor::from_slice(gradient)], *rate).expect("step");
+            // In two parts, which are taken in any order.
+            let (head, tail) = gradient.split_at(400);
+            let parts = adam.begin(&parameters, &[400, 600], *rate).expect("begin");
+            for (part, gradient) in parts.into_iter().zip([head, tail]).rev() {
+                part.step(&[Tensor::from_slice(gradient)]).expect("step");
+            }
         }
         assert_eq!(tensor_to_vec(&parameters.flat).expect("values"), whole);
     }

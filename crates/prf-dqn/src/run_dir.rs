@@ -42,8 +42,8 @@ pub struct Manifest {
     pub seed: u64,
     /// Device of the network.
     pub device: String,
-    /// Threads of libtorch.
-    pub threads: i32,
+    /// Threads of the network.
+    pub threads: usize,
     /// Steps taken so far.
     pub steps: u64,
     /// Whether the run came to its end.

@@ -7,7 +7,6 @@ use prf_envs::rng::{ChaCha8Rng, below, stream, unit_f32};
 use prf_envs::{Status, Task};
 
 use crate::checkpoint::{CheckpointStore, Model, Retention};
-use crate::compute::Compute;
 use crate::config::RunConfig;
 use crate::error::{Error, Result};
 use crate::evaluate::{Spread, episode_seeds, play_greedily};
@@ -103,14 +102,6 @@ pub fn check(config: &RunConfig, task: &Task) -> Result<()> {
     })
 }
 
-/// Sets libtorch's threads as the configuration asks and gives their number.
-pub fn set_threads(config: &RunConfig) -> i32 {
-    if config.train.threads > 0 {
-        tch::set_num_threads(config.train.threads as i32);
-    }
-    tch::get_num_threads()
-}
-
 impl Trainer {
     /// A run in `run`: at its beginning, or where its newest checkpoint left it.
     ///
@@ -138,7 +129,7 @@ impl Trainer {
             .collect::<Result<Vec<_>>>()?;
         let evaluation_tasks = (0..config.evaluation.episodes).map(|_| make()).collect::<Result<Vec<_>>>()?;
         let architecture = architecture(&evaluation_tasks[0], config.train.dueling)?;
-        let compute = Compute { device, precision: config.train.precision };
+        let compute = config.train.compute(device)?;
         let mut recording = Recording::default();
         (0..lanes.len()).for_each(|lane| recording.begin(lane, config.record.training_every_episodes));
         let frame_len = (architecture.input[0] * architecture.input[1]) as usize;
@@ -360,6 +351,11 @@ impl Trainer {
     /// Steps taken so far, over all environments.
     pub fn steps(&self) -> u64 {
         self.counters.steps
+    }
+
+    /// Threads that the network computes with.
+    pub fn threads(&self) -> usize {
+        self.learner.compute().threads()
     }
 
     /// Memory that the replay takes once it is full, in bytes.

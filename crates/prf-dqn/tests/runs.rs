@@ -11,7 +11,7 @@ use prf_dqn::compute::Precision;
 use prf_dqn::config::{PrioritizedConfig, RunConfig};
 use prf_dqn::record::{Event, Recorder};
 use prf_dqn::run_dir::RunDir;
-use prf_dqn::trainer::{Ending, Trainer, set_threads};
+use prf_dqn::trainer::{Ending, Trainer};
 use prf_envs::RewardForm;
 use safetensors::SafeTensors;
 
@@ -67,7 +67,6 @@ fn config() -> RunConfig {
 }
 
 fn open(config: &RunConfig, dir: &Path) -> prf_dqn::Result<Trainer> {
-    set_threads(config);
     let goal = Goal::from(Frame::new(84, 84));
     let run =
         if dir.join("config.toml").exists() { RunDir::at(dir) } else { RunDir::create(dir, config, Some(&goal))? };
@@ -235,7 +234,10 @@ fn checkpoints_of_other_formats_are_refused_and_left_alone() {
             let error = open(&config(), dir.path()).err().unwrap();
             let text = error.to_string();
             assert!(matches!(error, prf_dqn::Error::Format { .. }), "{text}");
-            assert!(text.contains(file) && text.contains(expected) && text.contains("expected format 2"), "{text}");
+            assert!(
+                text.contains(file) && text.contains(expected) && text.contains(&format!("expected format {FORMAT}")),
+                "{text}"
+            );
             assert_eq!(fs::read(&path).unwrap(), found);
             fs::write(&path, &whole).unwrap();
         }

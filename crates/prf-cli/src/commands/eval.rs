@@ -9,7 +9,6 @@ use prf_dqn::files::write_whole;
 use prf_dqn::learner::greedy_actions;
 use prf_dqn::network::QNetwork;
 use prf_dqn::run_dir::RunDir;
-use prf_dqn::trainer::set_threads;
 use prf_envs::players::{Oracle, Random, mean_score};
 use prf_envs::{Status, Task, registry};
 use serde::Serialize;
@@ -46,7 +45,6 @@ pub(crate) fn run(args: &EvalArgs, printer: &mut Printer) -> Result<ExitStatus> 
     let (run, model_path) = find_model(&args.run)?;
     let loaded = load_run(&run.config_path(), &[], None)?;
     let device = learning::open_device(args.device)?;
-    set_threads(&loaded.config);
     let network = learning::load_network(&loaded, &model_path, device)?;
 
     let seed = args.seed.unwrap_or(0);

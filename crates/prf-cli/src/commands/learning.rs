@@ -4,7 +4,6 @@ use std::io::ErrorKind;
 use std::path::Path;
 
 use prf_dqn::checkpoint::{FORMAT, Model};
-use prf_dqn::compute::Compute;
 use prf_dqn::network::QNetwork;
 use prf_dqn::record::TimeShares;
 use prf_dqn::trainer::architecture;
@@ -29,7 +28,7 @@ pub(crate) fn load_network(loaded: &LoadedRun, model: &Path, device: tch::Device
         let task = Task::new(&loaded.config.task(), loaded.goal.as_ref())?;
         let found = Model::read(model)?;
         found.check(&architecture(&task, loaded.config.train.dueling)?, model)?;
-        found.network(Compute { device, precision: loaded.config.train.precision })
+        found.network(&loaded.config.train.compute(device)?)
     };
     load().map_err(|error| explain(error.into(), None))
 }

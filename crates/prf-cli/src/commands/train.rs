@@ -6,7 +6,7 @@ use clap::ValueEnum;
 use prf_dqn::estimate::Estimate;
 use prf_dqn::record::{Event, Recorder};
 use prf_dqn::run_dir::{Manifest, RunDir};
-use prf_dqn::trainer::{Ending, Trainer, set_threads};
+use prf_dqn::trainer::{Ending, Trainer};
 
 use super::learning;
 use crate::ExitStatus;
@@ -30,7 +30,6 @@ pub(crate) fn run(args: &TrainArgs, printer: &mut Printer) -> Result<ExitStatus>
     let device = learning::open_device(args.device)?;
     // A run stays with what it began with, wherever it is resumed.
     loaded.config.train.precision = loaded.config.train.precision.resolved(device);
-    let threads = set_threads(&loaded.config);
     if args.dry_run {
         return dry_run(&loaded, device, printer);
     }
@@ -38,7 +37,7 @@ pub(crate) fn run(args: &TrainArgs, printer: &mut Printer) -> Result<ExitStatus>
     let (run, loaded) = open_run(args, loaded)?;
     let run = run.built_from(GIT_REVISION);
     let resume = resume_command(args, run.path());
-    let (ending, trainer) = train(&run, loaded, device, threads, args.resume, live, printer)
+    let (ending, trainer) = train(&run, loaded, device, args.resume, live, printer)
         .map_err(|error| learning::explain(error, Some(&resume)))?;
     if ending == Ending::Interrupted {
         printer.note(format!("interrupted; the run is saved, go on with\n  {resume}"));
@@ -56,7 +55,6 @@ fn train(
     run: &RunDir,
     loaded: LoadedRun,
     device: tch::Device,
-    threads: i32,
     resumed: bool,
     live: Option<LiveServer>,
     printer: &mut Printer,
@@ -64,7 +62,8 @@ fn train(
     let seed = loaded.config.seed;
     let mut trainer = Trainer::open(loaded.config, loaded.goal.as_ref(), run, device)?;
     printer.note(format!(
-        "seed {seed}, threads {threads}, replay memory up to {:.2} GB, run folder {}",
+        "seed {seed}, threads {}, replay memory up to {:.2} GB, run folder {}",
+        trainer.threads(),
         trainer.replay_bytes() as f64 / 1e9,
         run.path().display()
     ));
@@ -83,7 +82,7 @@ fn train(
         machine: Some(prf_dqn::machine::describe()),
         seed,
         device: format!("{device:?}").to_lowercase(),
-        threads,
+        threads: trainer.threads(),
         steps: trainer.steps(),
         finished,
         time: trainer.time(),

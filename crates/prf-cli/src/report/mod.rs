@@ -6,7 +6,6 @@ use prf_core::Goal;
 use prf_dqn::checkpoint::{CheckpointStore, MODEL_FILE};
 use prf_dqn::evaluate::episode_seeds;
 use prf_dqn::run_dir::Manifest;
-use prf_dqn::trainer::set_threads;
 use prf_envs::registry;
 
 use self::claims::{Claim, Outcome};
@@ -96,11 +95,7 @@ impl<'a> Chapter<'a> {
         let outcome = Outcome::of(group, &standings, Players::of(&first.config.env)?);
         let loaded = load_run(&first.dir.config_path(), &[], None);
         let (goal, played) = match loaded {
-            Ok(loaded) => {
-                set_threads(&loaded.config);
-                let played = play(group, printer);
-                (loaded.goal, played)
-            }
+            Ok(loaded) => (loaded.goal, play(group, printer)),
             // Its records are as good without the goal's picture.
             Err(error) => {
                 printer.warning(format_args!("the agent is not shown playing: {error}"), None);

@@ -25,7 +25,6 @@ use prf_dqn::config::RunConfig;
 use prf_dqn::learner::Learner;
 use prf_dqn::network::Architecture;
 use prf_dqn::replay::{Batch, Outcome, Reach, Replay};
-use prf_dqn::trainer::set_threads;
 use prf_envs::rng::{ChaCha8Rng, stream};
 use rand_core::Rng;
 use serde_json::json;
@@ -47,7 +46,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let beside = config.parent().unwrap_or(Path::new("")).to_owned();
     let mut config: RunConfig = toml::from_str(&std::fs::read_to_string(config)?)?;
     config.reward.goal = config.reward.goal.map(|goal| beside.join(goal));
-    let threads = set_threads(&config);
+    let threads = config.train.compute(tch::Device::Cpu)?.threads();
     say(&json!({ "versions": { "libtorch": prf_dqn::LIBTORCH_VERSION, "threads": threads.to_string() } }))?;
     let mut cases = HashMap::new();
     for line in std::io::stdin().lock().lines() {
@@ -96,7 +95,7 @@ impl Case {
 
     fn bare(config: &RunConfig, precision: Precision, side: usize) -> Result<Self, Box<dyn Error>> {
         let architecture = Architecture { input: [side as i64; 2], actions: 3, dueling: false };
-        let compute = Compute { device: tch::Device::Cpu, precision };
+        let compute = Compute::new(tch::Device::Cpu, precision, config.train.threads)?;
         let mut rng = stream(0, "bare", 0);
         let learner = Learner::new(architecture, config.train.learner(), compute, &mut rng)?;
         let count = config.train.batch_size;

@@ -12,7 +12,7 @@ use prf_core::{Goal, io};
 use prf_dqn::config::RunConfig;
 use prf_dqn::record::{Event, Recorder};
 use prf_dqn::run_dir::RunDir;
-use prf_dqn::trainer::{Ending, Trainer, set_threads};
+use prf_dqn::trainer::{Ending, Trainer};
 
 use super::nanoseconds;
 
@@ -40,8 +40,6 @@ impl Session {
         let (answer, answers) = channel();
         let (steps_per_update, learning_starts) = (config.train.steps_per_update, config.train.learning_starts);
         let run = std::thread::spawn(move || {
-            // libtorch counts threads for each thread that asks it to work.
-            set_threads(&config);
             let over = Cell::new(false);
             let mut stretches = Stretches { asked, answer, end: 0, begun: (0, Instant::now()), over: &over };
             Trainer::open(config, goal.as_ref(), &run, tch::Device::Cpu)?.run(&mut stretches, &|| over.get())

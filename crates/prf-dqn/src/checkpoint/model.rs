@@ -27,7 +27,7 @@ impl Model {
     }
 
     /// The network of this model.
-    pub fn network(&self, compute: Compute) -> Result<QNetwork> {
+    pub fn network(&self, compute: &Compute) -> Result<QNetwork> {
         QNetwork::from_flat(self.architecture.clone(), &self.values, compute)
     }
 
@@ -93,7 +93,7 @@ mod tests {
     fn model(dueling: bool) -> Model {
         let architecture = Architecture { input: [44, 52], actions: 4, dueling };
         let mut rng = prf_envs::rng::stream(1, "network", 0);
-        Model::of(&QNetwork::new(architecture, Compute::PLAIN, &mut rng).expect("network")).expect("model")
+        Model::of(&QNetwork::new(architecture, &Compute::plain(), &mut rng).expect("network")).expect("model")
     }
 
     #[test]

@@ -11,7 +11,7 @@ use crate::network::Architecture;
 
 /// Version of the layout of a checkpoint. It goes up with every change by which a run would no longer be continued to the
 /// same bits, in this version or an older one.
-pub const FORMAT: u32 = 2;
+pub const FORMAT: u32 = 3;
 
 /// Key of the text in the metadata. It is the only key: several would be written in any order.
 const KEY: &str = "prf";
@@ -113,8 +113,8 @@ mod tests {
 
     #[test]
     fn a_newer_file_is_told_by_its_format_whatever_else_it_holds() {
-        let newer = writer_of(text(r#"{"format": 3, "prf_version": "0.9.1", "network": "of a kind to come"}"#));
-        assert_eq!(newer, Some(Writer { format: 3, prf_version: "0.9.1".to_owned() }));
+        let newer = writer_of(text(r#"{"format": 4, "prf_version": "0.9.1", "network": "of a kind to come"}"#));
+        assert_eq!(newer, Some(Writer { format: 4, prf_version: "0.9.1".to_owned() }));
     }
 
     #[test]

@@ -14,8 +14,8 @@ use super::{BETA1, BETA2, EPSILON, StepSize};
 use crate::error::Result;
 use crate::network::Parameters;
 
-/// Parameters below which a second thread costs more than it saves.
-const LEAST_PER_THREAD: usize = 100_000;
+/// Parameters that one worker moves at a time, unless fewer are left.
+const SHARE: usize = 200_000;
 /// Parameters that are moved, then rounded while they are still in the nearest cache.
 const TOGETHER: usize = 1024;
 
@@ -44,18 +44,16 @@ pub(super) fn step(
         second: values_mut(second),
         rounded: rounded.as_mut().map_or(&mut [], values_mut),
     };
-    let threads = tch::get_num_threads().max(1) as usize;
-    let share = count.div_ceil(threads).max(LEAST_PER_THREAD);
-    std::thread::scope(|scope| {
+    rayon::in_place_scope(|scope| {
         for gradient in &gradients {
             let gradient = Gradient::of(gradient);
-            for start in (0..gradient.len()).step_by(share) {
-                let gradient = gradient.part(start, share);
+            for start in (0..gradient.len()).step_by(SHARE) {
+                let gradient = gradient.part(start, SHARE);
                 let piece = rest.split_off_front(gradient.len());
-                // Whole shares go to threads of their own, what is left over stays on this one. Pieces never
-                // interact, so the threads cannot change the result.
-                if threads > 1 && gradient.len() == share {
-                    scope.spawn(move || piece.step(gradient, size));
+                // Whole shares go to whichever worker is free, what is left over stays on this one. Pieces never
+                // interact, so the workers cannot change the result.
+                if gradient.len() == SHARE {
+                    scope.spawn(move |_| piece.step(gradient, size));
                 } else {
                     piece.step(gradient, size);
                 }
@@ -233,8 +231,8 @@ fn values<T: Element>(tensor: &Tensor) -> &[T] {
 
 fn values_mut<T: Element>(tensor: &mut Tensor) -> &mut [T] {
     assert_readable::<T>(tensor);
-    // SAFETY: as above, and `step` has made sure that no other slice it takes lies over this one; no libtorch call runs
-    // while the slices live.
+    // SAFETY: as above, and `step` has made sure that no other slice it takes lies over this one; while the slices live, no
+    // libtorch call reads or writes these numbers, which are nobody else's part of the step.
     unsafe { slice::from_raw_parts_mut(tensor.data_ptr().cast(), tensor.numel()) }
 }
 

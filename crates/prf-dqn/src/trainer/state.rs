@@ -151,12 +151,12 @@ impl Trainer {
     }
 
     fn restore_learner(&mut self, checkpoint: &mut Checkpoint, state: &State, dir: &Path) -> Result<()> {
-        let compute = self.learner.compute();
+        let compute = self.learner.compute().clone();
         let count = checkpoint.model.values.len();
         let [target, first, second] = ["target", "adam.first", "adam.second"];
         let target = Model { values: checkpoint.vector(target, count, dir)?, ..checkpoint.model.clone() };
-        self.learner.online = checkpoint.model.network(compute)?;
-        self.learner.target = target.network(compute)?;
+        self.learner.online = checkpoint.model.network(&compute)?;
+        self.learner.target = target.network(&compute)?;
         let (first, second) = (checkpoint.vector(first, count, dir)?, checkpoint.vector(second, count, dir)?);
         self.learner.optimizer = Adam::restore(&first, &second, state.adam_steps, compute.device)?;
         self.learner.updates = state.updates;
