@@ -92,7 +92,7 @@ impl Learner {
         let pair = Arc::clone(&self.compute.pair);
         pair.work(move || {
             let inputs = self.inputs(batch)?;
-            self.learn(inputs, learning_rate)
+            self.learn(&inputs, learning_rate)
         })
     }
 
@@ -118,12 +118,12 @@ impl Learner {
     /// As [`update`](Learner::update), from what [`inputs`](Learner::inputs) gave.
     pub fn update_from(&mut self, inputs: &Inputs, learning_rate: f64) -> Result<Update> {
         let (pair, inputs) = (Arc::clone(&self.compute.pair), inputs.share());
-        pair.work(move || self.learn(inputs, learning_rate))
+        pair.work(move || self.learn(&inputs, learning_rate))
     }
 
-    fn learn(&mut self, inputs: Inputs, learning_rate: f64) -> Result<Update> {
+    fn learn(&mut self, inputs: &Inputs, learning_rate: f64) -> Result<Update> {
         let pair = Arc::clone(&self.compute.pair);
-        let (trace, targets) = self.forward(&inputs)?;
+        let (trace, targets) = self.forward(inputs)?;
         let values = trace.values.f_gather(1, &inputs.actions, false)?.f_squeeze_dim(1)?;
         let losses = values.f_smooth_l1_loss(&targets, Reduction::None, 1.0)?;
         let mean_loss = of_weight(losses, inputs.weights.as_ref())?.f_mean(Kind::Float)?;

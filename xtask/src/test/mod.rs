@@ -9,6 +9,7 @@ use anyhow::Result;
 
 mod clients;
 mod package;
+mod readers;
 mod suite;
 mod tally;
 mod video;
@@ -31,6 +32,7 @@ pub fn run(root: &Path) -> Result<ExitCode> {
         run_suite(&mut sink, "prf-cli without libtorch", |runner| without_libtorch(root, runner)),
         run_suite(&mut sink, "wheel", |runner| wheel::test(root, runner)),
         run_suite(&mut sink, "wheel with its clients", |runner| clients::test(root, runner)),
+        run_suite(&mut sink, "runs in other programs", |runner| readers::test(root, runner)),
         run_suite(&mut sink, "videos by ffmpeg", |runner| video::test(root, runner)),
     ];
     let sum = report(&mut sink, &outcomes)?;
@@ -60,14 +62,20 @@ fn workspace(root: &Path, runner: &mut Runner<'_>) -> Result<()> {
 
 /// `cargo test --workspace`, with what it needs to link.
 fn workspace_tests(root: &Path) -> Result<Command> {
+    let mut tests = with_libtorch(root)?;
+    tests.args(["test", "--workspace"]);
+    Ok(tests)
+}
+
+/// A cargo with what it needs to link to libtorch.
+fn with_libtorch(root: &Path) -> Result<Command> {
     let source = libtorch::ensure(root)?;
     let path = env::var_os("PATH").unwrap_or_default();
     let compiler = Compiler::find(&path, env::var_os("CXX").as_deref())?;
-    let mut tests = cargo_at(root);
-    tests.args(["test", "--workspace"]);
-    source.configure(&mut tests);
-    compiler.configure(&mut tests);
-    Ok(tests)
+    let mut command = cargo_at(root);
+    source.configure(&mut command);
+    compiler.configure(&mut command);
+    Ok(command)
 }
 
 fn without_libtorch(root: &Path, runner: &mut Runner<'_>) -> Result<()> {
