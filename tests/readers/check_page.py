@@ -1,6 +1,6 @@
 """Shows a page in headless Chromium as a reader sees it, and checks what no parser can.
 
-    python tests/browser/check_page.py report.html [--shots FOLDER] [--chromium PROGRAM]
+    python tests/readers/check_page.py report.html [--shots FOLDER] [--chromium PROGRAM]
 
 Scripts are off. At each width, in light and dark, the page has to be shown whole (no picture broken, nothing wider than the
 screen), and nothing may be fetched but the page itself. With --shots, a picture of each is written. Needs Python and a

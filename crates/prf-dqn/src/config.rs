@@ -85,7 +85,8 @@ pub struct TrainConfig {
     /// run begins. Parameters are learned in f32 with each.
     #[serde(default)]
     pub precision: Precision,
-    /// Give the network a value and an advantage stream (dueling, Wang et al. 2016).
+    /// Give the network a value and an advantage stream (dueling, Wang et al. 2016). That paper also divides the gradient that enters
+    /// the last convolution by √2 and clips gradients to a norm of 10; neither is done here.
     #[serde(default)]
     pub dueling: bool,
     /// CPU threads of the network; 0 takes every core. Part of what makes a run repeatable.

@@ -51,15 +51,21 @@ impl Layers {
         let mut out = pictures.pop().expect("what came out of the last convolution");
         let features = out.f_view([hidden[0].size()[0], -1])?;
 
+        // Nothing is spawned before this is over: whoever waits for a part of a layer's step takes up other tasks, and a task waits
+        // for what only this worker can send.
         let mut of_hidden = Vec::new();
         for ((gradient, hidden), [_, output]) in self.of_streams(values)?.into_iter().zip(&hidden).zip(&self.streams) {
             let gradient = gradient.f_to_kind(output.weight.kind())?;
             let before = hidden.f_threshold_backward(&output.back(&gradient)?, 0)?;
             let (take_hidden, take_output) = (next(&mut take_streams), next(&mut take_streams));
             take_output(gradients(&gradient, hidden)?)?;
-            let task = Task::new(&before, &features, None);
-            of_hidden.push((before, task.spawn(take_hidden, scope, note)));
+            of_hidden.push((before, take_hidden));
         }
+        let spawn = |(of_hidden, take): (Tensor, T)| {
+            let used = Task::new(&of_hidden, &features, None).spawn(take, scope, note);
+            (of_hidden, used)
+        };
+        let of_hidden: Vec<(Tensor, Used)> = of_hidden.into_iter().map(spawn).collect();
         let mut gradient: Option<Tensor> = None;
         for ((of_hidden, used), [hidden, _]) in of_hidden.into_iter().zip(&self.streams) {
             let of_features = hidden.back(&of_hidden)?;
