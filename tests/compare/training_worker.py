@@ -11,6 +11,7 @@ CONFIG is what crates/prf-dqn/examples/training_worker trains. Says its versions
 """
 
 import json
+import os
 import platform
 import sys
 import time
@@ -32,7 +33,7 @@ SETTINGS = {"plain", "fused", "channels_last", "bf16"}
 def main():
     with open(sys.argv[1], "rb") as file:
         config = tomllib.load(file)
-    threads = config["train"]["threads"] or torch.get_num_threads()
+    threads = config["train"]["threads"] or len(os.sched_getaffinity(0))
     torch.set_num_threads(threads)
     names = {"PyTorch": "torch", "Stable-Baselines3": "stable-baselines3", "Gymnasium": "gymnasium"}
     found = {title: version(name) for title, name in names.items()}

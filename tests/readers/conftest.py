@@ -60,15 +60,17 @@ def finished(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="session")
 def killed(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The folder of a run that was killed once it had a few checkpoints; `c.toml` lies beside it."""
+    """The folder of a run that was killed once it had a checkpoint; `c.toml` lies beside it."""
     folder = tmp_path_factory.mktemp("killed")
     set_up(folder, 2_000)
     with subprocess.Popen([os.environ["PRF"], "train", "c.toml", "--out", "run"], cwd=folder, stderr=sys.stderr) as run:
         end = time.monotonic() + PATIENCE_S
-        while not list(folder.glob("run/checkpoints/step-*00")):
-            assert run.poll() is None and time.monotonic() < end, "the run made no checkpoint"
-            time.sleep(0.01)
-        run.kill()
+        try:
+            while not list(folder.glob("run/checkpoints/step-*00")):
+                assert run.poll() is None and time.monotonic() < end, "the run made no checkpoint"
+                time.sleep(0.01)
+        finally:
+            run.kill()
     return folder / "run"
 
 

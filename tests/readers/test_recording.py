@@ -18,8 +18,9 @@ class Json:
 
 def diagnosis(recording: Path) -> dict[str, object]:
     """The summary of the doctor, who is of another house than what wrote the file."""
-    said = called("pymcap-cli", "doctor", "--strict-message-order", "--format", "jsonl", str(recording)).stdout
-    return json.loads(said.splitlines()[-1])
+    done = called("pymcap-cli", "doctor", "--strict-message-order", "--format", "jsonl", str(recording))
+    assert done.stdout, done.stderr
+    return json.loads(done.stdout.splitlines()[-1])
 
 
 def assert_sound(recording: Path) -> None:

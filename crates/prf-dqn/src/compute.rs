@@ -12,11 +12,9 @@ use crate::error::{Error, Result};
 /// Where a network computes, in what numbers, and by how many threads.
 #[derive(Debug, Clone)]
 pub struct Compute {
-    /// Where its tensors lie.
-    pub device: Device,
-    /// The numbers of its forward and backward passes.
-    pub precision: Precision,
-    pub(crate) pair: Arc<Pair>,
+    device: Device,
+    precision: Precision,
+    pair: Arc<Pair>,
 }
 
 /// The numbers of forward and backward passes. Parameters, Adam's moments and losses are f32 with each.
@@ -44,6 +42,16 @@ impl Compute {
         Ok(Self { device, precision, pair: Arc::new(Pair::new(threads)?) })
     }
 
+    /// Where its tensors lie.
+    pub fn device(&self) -> Device {
+        self.device
+    }
+
+    /// The workers.
+    pub(crate) fn pair(&self) -> &Arc<Pair> {
+        &self.pair
+    }
+
     /// The threads that compute.
     pub fn threads(&self) -> usize {
         self.pair.threads
@@ -52,7 +60,12 @@ impl Compute {
     /// In f32 on the processor.
     #[cfg(test)]
     pub(crate) fn plain() -> Self {
-        Self::new(Device::Cpu, Precision::F32, 0).expect("threads")
+        Self::on_cpu(Precision::F32, 0)
+    }
+
+    #[cfg(test)]
+    pub(crate) fn on_cpu(precision: Precision, threads: usize) -> Self {
+        Self::new(Device::Cpu, precision, threads).expect("threads")
     }
 
     /// The type of the tensors that are computed with.
@@ -74,12 +87,17 @@ pub(crate) struct Pair {
 impl Pair {
     fn new(threads: usize) -> Result<Self> {
         let workers = threads.min(2);
-        let each = threads.div_ceil(workers) as i32;
+        // The same for both, so that it doesn't matter which of them does what.
+        let each = (threads / workers) as i32;
         let pool = ThreadPoolBuilder::new()
             .num_threads(workers)
             .thread_name(|index| format!("network-{index}"))
-            // libtorch counts threads for each thread that asks it to work.
-            .start_handler(move |_| tch::set_num_threads(each))
+            .start_handler(move |_| {
+                // libtorch counts threads for each thread that asks it to work, and gives a new one the number that was set
+                // last, wherever that was; once it has been asked, it does so no more.
+                let _ = tch::get_num_threads();
+                tch::set_num_threads(each);
+            })
             .build()
             .map_err(|error| Error::Threads { threads: workers, reason: error.to_string() })?;
         Ok(Self { pool, threads })

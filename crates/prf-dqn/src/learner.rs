@@ -74,7 +74,7 @@ impl Learner {
         let online = QNetwork::new(architecture, &compute, rng)?;
         let values = online.to_vec()?;
         let target = QNetwork::from_flat(online.architecture().clone(), &values, &compute)?;
-        let optimizer = Adam::new(values.len(), compute.device)?;
+        let optimizer = Adam::new(values.len(), compute.device())?;
         Ok(Self { online, target, optimizer, updates: 0, settings, compute })
     }
 
@@ -88,8 +88,11 @@ impl Learner {
     /// and `c` the reward scale.
     ///
     /// From a loss that is infinite or NaN nothing is learned: the network stays as it was.
+    ///
+    /// # Errors
+    /// When libtorch fails, it may be in the middle: the learner is of no more use then.
     pub fn update(&mut self, batch: &Batch, learning_rate: f64) -> Result<Update> {
-        let pair = Arc::clone(&self.compute.pair);
+        let pair = Arc::clone(self.compute.pair());
         pair.work(move || {
             let inputs = self.inputs(batch)?;
             self.learn(&inputs, learning_rate)
@@ -98,12 +101,12 @@ impl Learner {
 
     /// A batch as tensors on the learner's device.
     pub fn inputs(&self, batch: &Batch) -> Result<Inputs> {
-        let device = self.compute.device;
+        let device = self.compute.device();
         let numbers = |values: &[f32]| Tensor::f_from_slice(values)?.f_to_device(device);
         let [of_states, of_next_states] = [self.online.layers(), self.online.layers()];
         let (states, next_states) = self
             .compute
-            .pair
+            .pair()
             .join(move || of_states.pictures(&batch.states), move || of_next_states.pictures(&batch.next_states));
         Ok(Inputs {
             states: states?,
@@ -117,12 +120,12 @@ impl Learner {
 
     /// As [`update`](Learner::update), from what [`inputs`](Learner::inputs) gave.
     pub fn update_from(&mut self, inputs: &Inputs, learning_rate: f64) -> Result<Update> {
-        let (pair, inputs) = (Arc::clone(&self.compute.pair), inputs.share());
+        let (pair, inputs) = (Arc::clone(self.compute.pair()), inputs.share());
         pair.work(move || self.learn(&inputs, learning_rate))
     }
 
     fn learn(&mut self, inputs: &Inputs, learning_rate: f64) -> Result<Update> {
-        let pair = Arc::clone(&self.compute.pair);
+        let pair = Arc::clone(self.compute.pair());
         let (trace, targets) = self.forward(inputs)?;
         let values = trace.values.f_gather(1, &inputs.actions, false)?.f_squeeze_dim(1)?;
         let losses = values.f_smooth_l1_loss(&targets, Reduction::None, 1.0)?;
@@ -133,10 +136,10 @@ impl Learner {
             let gradient = values.f_sub(&targets)?.f_clamp_(-1.0, 1.0)?.f_div_scalar_(values.numel() as f64)?;
             let gradient = of_weight(gradient, inputs.weights.as_ref())?.f_unsqueeze(1)?;
             let gradient = trace.values.f_zeros_like()?.f_scatter_(1, &inputs.actions, &gradient)?;
-            let lengths = self.online.architecture().lengths();
-            let parts = self.optimizer.begin(self.online.parameters(), &lengths, learning_rate)?;
+            let (layers, lengths) = (self.online.layers(), self.online.architecture().lengths());
+            let parts = self.optimizer.begin(self.online.parameters_mut(), &lengths, learning_rate)?;
             let take = parts.into_iter().map(|part| move |gradients: [Tensor; 2]| part.step(&gradients)).collect();
-            self.online.layers().backward(trace, &gradient, &pair, take)?;
+            layers.backward(trace, &gradient, &pair, take)?;
             self.updates += 1;
             if self.updates.is_multiple_of(self.settings.target_every_updates) {
                 self.target.copy_from(&self.online)?;
@@ -147,7 +150,7 @@ impl Learner {
 
     /// The forward pass to learn from, and the targets of its values.
     fn forward(&self, inputs: &Inputs) -> Result<(Trace, Tensor)> {
-        let pair = &self.compute.pair;
+        let pair = self.compute.pair();
         let [states, next_states] = [&inputs.states, &inputs.next_states].map(Tensor::shallow_clone);
         let [online, target] = [self.online.layers(), self.target.layers()];
         let (trace, next) = pair.join(move || online.forward(&states), move || target.forward(&next_states));
@@ -207,6 +210,7 @@ pub fn greedy_actions(values: &[f32], actions: usize) -> impl Iterator<Item = us
 mod tests {
     use super::*;
     use crate::compute::Precision;
+    use crate::network::tests::{by_autograd, distance, flat};
     use prf_envs::rng::{stream, unit_f32};
 
     fn learner(double: bool, dueling: bool) -> Learner {
@@ -267,6 +271,45 @@ mod tests {
     }
 
     #[test]
+    fn the_first_update_moves_by_the_gradient_of_the_loss() {
+        for (dueling, weights) in [(false, vec![]), (true, vec![1.0, 0.5, 0.25, 0.1])] {
+            let mut learner = learner(true, dueling);
+            let batch = Batch { weights: weights.clone(), ..batch() };
+            let (values, leaves) = by_autograd(&learner.online, &batch.states);
+            let update = learner.update(&batch, 1e-4).expect("update");
+            // One of the errors is beyond ±1, where the loss is linear.
+            let errors = update.errors().expect("errors");
+            assert!(errors.iter().any(|error| error.abs() > 1.0) && errors.iter().any(|error| error.abs() < 1.0));
+
+            let values = values.gather(1, &Tensor::from_slice(&batch.actions).unsqueeze(1), false).squeeze_dim(1);
+            let targets = Tensor::from_slice(&update.targets().expect("targets"));
+            let losses = values.smooth_l1_loss(&targets, Reduction::None, 1.0);
+            let weights = if weights.is_empty() { losses.ones_like() } else { Tensor::from_slice(&weights) };
+            let loss = (losses * weights).mean(Kind::Float);
+            let expected = flat(&Tensor::run_backward(&[loss], &leaves, false, false));
+            // After one step, Adam's first moment is a tenth of the gradient.
+            let (first, _, _) = learner.optimizer.to_parts().expect("moments");
+            let named = learner.online.architecture().named(&first);
+            let found: Vec<f32> = named.iter().map(|moment| moment * 10.0).collect();
+            let distance = distance(&found, &expected);
+            assert!(distance < 1e-5, "{dueling}: {distance}");
+        }
+    }
+
+    #[test]
+    fn updates_give_the_same_bits_by_one_worker_and_by_two() {
+        for (dueling, precision) in [(false, Precision::F32), (true, Precision::Bf16)] {
+            let [one, two] = [1, 2].map(|threads| {
+                let mut learner = learner_in(true, dueling, Compute::on_cpu(precision, threads));
+                learner.settings.target_every_updates = 7;
+                let losses: Vec<f32> = (0..20).map(|_| learner.update(&batch(), 1e-3).expect("update").loss).collect();
+                (losses, learner.online.to_vec().expect("values"), learner.optimizer.to_parts().expect("moments"))
+            });
+            assert_eq!(one, two);
+        }
+    }
+
+    #[test]
     fn a_transition_of_no_weight_teaches_nothing() {
         let (mut whole, mut part) = (learner(true, false), learner(true, false));
         let weighted = Batch { weights: vec![1.0, 1.0, 0.0, 0.0], ..batch() };
@@ -291,7 +334,7 @@ mod tests {
     #[test]
     fn bf16_learns_nearly_the_same_and_keeps_its_parameters_exact() {
         let mut plain = learner(true, false);
-        let mut short = learner_in(true, false, Compute { precision: Precision::Bf16, ..Compute::plain() });
+        let mut short = learner_in(true, false, Compute::on_cpu(Precision::Bf16, 0));
         assert_eq!(short.online.to_vec().expect("values"), plain.online.to_vec().expect("values"));
         let (mut first, mut last) = (0.0, [0.0f32; 2]);
         for update in 0..30 {

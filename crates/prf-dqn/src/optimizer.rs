@@ -1,5 +1,7 @@
 //! Adam (Kingma and Ba, 2014) over a network's flat parameters, with its moments in the open so that they can be saved.
 
+use std::marker::PhantomData;
+
 use tch::{Device, Kind, Tensor};
 
 use crate::error::Result;
@@ -47,7 +49,14 @@ impl Adam {
     }
 
     /// Begins one step, which is taken part by part: `lengths` numbers of the parameters each, in their order.
-    pub(crate) fn begin(&mut self, parameters: &Parameters, lengths: &[i64], learning_rate: f64) -> Result<Vec<Part>> {
+    ///
+    /// While there are parts, nothing else may change the parameters, and nothing may read those whose part takes its step.
+    pub(crate) fn begin<'a>(
+        &'a mut self,
+        parameters: &'a mut Parameters,
+        lengths: &[i64],
+        learning_rate: f64,
+    ) -> Result<Vec<Part<'a>>> {
         self.steps += 1;
         let size = StepSize {
             rate: learning_rate / (1.0 - BETA1.powf(self.steps as f64)),
@@ -60,7 +69,8 @@ impl Adam {
                 flat: part(&parameters.flat)?,
                 rounded: parameters.rounded.as_ref().map(part).transpose()?,
             };
-            let part = Part { parameters, first: part(&self.first)?, second: part(&self.second)?, size };
+            let (first, second) = (part(&self.first)?, part(&self.second)?);
+            let part = Part { parameters, first, second, size, whole: PhantomData };
             start += length;
             Ok(part)
         });
@@ -70,14 +80,15 @@ impl Adam {
 
 /// Some of the parameters and their moments, as handles to where they lie, in a step that has begun.
 #[derive(Debug)]
-pub(crate) struct Part {
+pub(crate) struct Part<'a> {
     parameters: Parameters,
     first: Tensor,
     second: Tensor,
     size: StepSize,
+    whole: PhantomData<(&'a mut Adam, &'a mut Parameters)>,
 }
 
-impl Part {
+impl Part<'_> {
     /// Moves the parameters against `gradients`, which together have as many elements in the same order.
     pub(crate) fn step(mut self, gradients: &[Tensor]) -> Result<()> {
         if self.parameters.flat.device() == Device::Cpu {
@@ -111,13 +122,13 @@ mod tests {
 
     fn computed_after(steps: &[(Vec<f32>, f64)], fused: bool, compute: &Compute) -> (Parameters, Adam) {
         let count = steps[0].0.len();
-        let parameters = Parameters::new(&vec![1.0f32; count], compute).expect("parameters");
+        let mut parameters = Parameters::new(&vec![1.0f32; count], compute).expect("parameters");
         let mut adam = Adam::new(count, Device::Cpu).expect("adam");
         for (gradient, rate) in steps {
             let (head, tail) = gradient.split_at(count / 3);
             let parts = [head, tail].map(|part| Tensor::from_slice(part).to_kind(compute.kind()));
             let lengths = [count as i64];
-            let mut part = adam.begin(&parameters, &lengths, *rate).expect("begin").pop().expect("a part");
+            let mut part = adam.begin(&mut parameters, &lengths, *rate).expect("begin").pop().expect("a part");
             let step = if fused { part.step(&parts) } else { part.step_by_tensors(&parts) };
             step.expect("step");
         }
@@ -162,7 +173,7 @@ mod tests {
     #[test]
     fn rounded_gradients_move_parameters_that_are_rounded_as_libtorch_does() {
         let steps: Vec<_> = (0..5).map(|step| (gradients(300_007, step), 1e-3)).collect();
-        let compute = Compute { precision: Precision::Bf16, ..Compute::plain() };
+        let compute = Compute::on_cpu(Precision::Bf16, 0);
         let [fused, plain] = [true, false].map(|fused| computed_after(&steps, fused, &compute).0);
         let worst = (&fused.flat - &plain.flat).abs().max().double_value(&[]);
         assert!(worst < 1e-6, "largest difference {worst}");
@@ -188,11 +199,11 @@ mod tests {
         let (half, adam) = parameters_after(&steps[..2], true);
         let (first, second, count) = adam.to_parts().expect("parts");
         let mut adam = Adam::restore(&first, &second, count, Device::Cpu).expect("restore");
-        let parameters = Parameters::new(&half, &Compute::plain()).expect("parameters");
+        let mut parameters = Parameters::new(&half, &Compute::plain()).expect("parameters");
         for (gradient, rate) in &steps[2..] {
             // In two parts, which are taken in any order.
             let (head, tail) = gradient.split_at(400);
-            let parts = adam.begin(&parameters, &[400, 600], *rate).expect("begin");
+            let parts = adam.begin(&mut parameters, &[400, 600], *rate).expect("begin");
             for (part, gradient) in parts.into_iter().zip([head, tail]).rev() {
                 part.step(&[Tensor::from_slice(gradient)]).expect("step");
             }

@@ -49,6 +49,7 @@ fn everything_on() -> RunConfig {
     let mut config = config();
     config.reward.form = RewardForm::Potential;
     config.train.dueling = true;
+    config.train.threads = 2;
     config.train.n_step = 3;
     config.train.prioritized = Some(PrioritizedConfig::default());
     config

@@ -26,8 +26,10 @@ impl Layers {
         let values = values.shallow_clone();
         let outcome = Mutex::new(Ok(()));
         let note = &|result: Result<()>| {
-            if result.is_err() {
-                *outcome.lock().expect("nothing panics while it is held") = result;
+            let mut outcome = outcome.lock().expect("nothing panics while it is held");
+            // Of several errors the first one counts.
+            if outcome.is_ok() {
+                *outcome = result;
             }
         };
         pair.scope(move |scope| note(layers.go_back(trace, &values, take, scope, note)));

@@ -59,7 +59,8 @@ pub(super) fn channels_first(rows: &Tensor, [height, width]: [usize; 2], channel
 
 /// What [`channels_first`] does, undone.
 pub(super) fn channels_last(pictures: &Tensor, channels: usize) -> Result<Tensor> {
-    Ok(pictures.f_permute([0, 2, 3, 1])?.f_reshape([-1, channels as i64])?)
+    // Where libtorch gave them channels first, this copies them.
+    Ok(pictures.f_permute([0, 2, 3, 1])?.f_contiguous()?.f_view([-1, channels as i64])?)
 }
 
 pub(super) fn mean(values: &Tensor) -> Result<Tensor> {

@@ -114,7 +114,7 @@ impl Architecture {
     }
 
     /// What [`ordered`](Architecture::ordered) does, undone.
-    pub(super) fn named(&self, values: &[f32]) -> Vec<f32> {
+    pub(crate) fn named(&self, values: &[f32]) -> Vec<f32> {
         self.reordered(values, |from, to, ordered, weights| weights[from] = ordered[to])
     }
 

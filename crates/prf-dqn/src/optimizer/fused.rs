@@ -232,7 +232,8 @@ fn values<T: Element>(tensor: &Tensor) -> &[T] {
 fn values_mut<T: Element>(tensor: &mut Tensor) -> &mut [T] {
     assert_readable::<T>(tensor);
     // SAFETY: as above, and `step` has made sure that no other slice it takes lies over this one; while the slices live, no
-    // libtorch call reads or writes these numbers, which are nobody else's part of the step.
+    // libtorch call reads or writes these numbers: parts of a step don't overlap, and whoever takes one sees to it that nothing
+    // computes with its parameters any more (`Adam::begin`).
     unsafe { slice::from_raw_parts_mut(tensor.data_ptr().cast(), tensor.numel()) }
 }
 

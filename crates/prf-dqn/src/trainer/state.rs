@@ -158,7 +158,7 @@ impl Trainer {
         self.learner.online = checkpoint.model.network(&compute)?;
         self.learner.target = target.network(&compute)?;
         let (first, second) = (checkpoint.vector(first, count, dir)?, checkpoint.vector(second, count, dir)?);
-        self.learner.optimizer = Adam::restore(&first, &second, state.adam_steps, compute.device)?;
+        self.learner.optimizer = Adam::restore(&first, &second, state.adam_steps, compute.device())?;
         self.learner.updates = state.updates;
         Ok(())
     }
