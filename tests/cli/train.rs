@@ -347,7 +347,7 @@ fn a_checkpoint_of_another_prf_is_refused_with_what_to_do() {
     train(folder.path(), &["--out", "run"]).success();
     let model = newest(&run).join("model.safetensors");
     let whole = fs::read(&model).expect("it was written");
-    let ours = br#"\"format\":2,"#;
+    let ours = br#"\"format\":3,"#;
     let at = whole.windows(ours.len()).position(|window| window == ours).expect("the header names the format");
     let cases: [(&[u8], &str, &str); 2] = [
         (br#"\"format\":7,"#, "got format 7 of prf 0.1.0", "hint: use prf 0.1.0 or a newer one"),
@@ -359,7 +359,7 @@ fn a_checkpoint_of_another_prf_is_refused_with_what_to_do() {
         fs::write(&model, bytes).expect("the folder is ours");
         let before = contents(&run);
         let refused =
-            || contains("model.safetensors").and(contains(got)).and(contains("expected format 2")).and(contains(hint));
+            || contains("model.safetensors").and(contains(got)).and(contains("expected format 3")).and(contains(hint));
         train(folder.path(), &["--out", "run", "--resume"]).code(1).stderr(refused());
         prf(folder.path()).args(["eval", "run"]).assert().code(1).stderr(refused());
         assert!(contents(&run) == before, "something was changed");
