@@ -22,9 +22,9 @@ pub struct Compute {
 #[serde(rename_all = "lowercase")]
 pub enum Precision {
     /// Bf16 where the processor multiplies it natively, f32 elsewhere.
+    #[default]
     Auto,
     /// 32 bits.
-    #[default]
     F32,
     /// Bfloat16: the range of f32 with 8 significant bits.
     Bf16,
