@@ -341,6 +341,21 @@ fn a_run_that_diverges_says_where_and_saves_that_moment() {
 }
 
 #[test]
+fn a_run_stays_with_its_precision_wherever_it_is_resumed() {
+    for (precision, other) in [("bf16", "f32"), ("f32", "bf16")] {
+        let folder = folder();
+        train(folder.path(), &["--out", "run", "--set", &format!("train.precision={precision:?}")]).success();
+        // The config says nothing of it, which is `auto`.
+        train(folder.path(), &["--out", "run", "--resume"]).success();
+        train(folder.path(), &["--out", "run", "--resume", "--set", &format!("train.precision={other:?}")])
+            .code(2)
+            .stderr(contains("was started with another config"));
+        let config = fs::read_to_string(folder.path().join("run/config.toml")).expect("it was written");
+        assert!(config.contains(&format!("precision = {precision:?}")), "{config}");
+    }
+}
+
+#[test]
 fn a_checkpoint_of_another_prf_is_refused_with_what_to_do() {
     let folder = folder();
     let run = folder.path().join("run");

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
+use prf_dqn::compute::Precision;
 use prf_dqn::estimate::Estimate;
 use prf_dqn::record::{Event, Recorder};
 use prf_dqn::run_dir::{Manifest, RunDir};
@@ -28,13 +29,12 @@ pub(crate) fn run(args: &TrainArgs, printer: &mut Printer) -> Result<ExitStatus>
         printer.warning(format_args!("the goal's sequence: {warning}"), Some(warning.hint()));
     }
     let device = learning::open_device(args.device)?;
-    // A run stays with what it began with, wherever it is resumed.
-    loaded.config.train.precision = loaded.config.train.precision.resolved(device);
     if args.dry_run {
+        loaded.resolve_precision(device);
         return dry_run(&loaded, device, printer);
     }
     let live = serve(args, &loaded, printer)?;
-    let (run, loaded) = open_run(args, loaded)?;
+    let (run, loaded) = open_run(args, loaded, device)?;
     let run = run.built_from(GIT_REVISION);
     let resume = resume_command(args, run.path());
     let (ending, trainer) = train(&run, loaded, device, args.resume, live, printer)
@@ -140,9 +140,10 @@ fn dry_run(loaded: &LoadedRun, device: tch::Device, printer: &mut Printer) -> Re
 }
 
 /// A new run folder, or with `--resume` the one that is there, which then brings its own config and goal.
-fn open_run(args: &TrainArgs, loaded: LoadedRun) -> Result<(RunDir, LoadedRun)> {
+fn open_run(args: &TrainArgs, mut loaded: LoadedRun, device: tch::Device) -> Result<(RunDir, LoadedRun)> {
     let path = args.out.clone().unwrap_or_else(|| default_folder(&args.config, loaded.config.seed));
     if !args.resume {
+        loaded.resolve_precision(device);
         let run = RunDir::create(&path, &loaded.config, loaded.goal.as_ref())
             .map_err(|error| learning::explain(error.into(), None))?;
         return Ok((run, loaded));
@@ -154,7 +155,12 @@ fn open_run(args: &TrainArgs, loaded: LoadedRun) -> Result<(RunDir, LoadedRun)> 
             .hint("name the run's folder with --out, or start it without --resume")
             .into());
     }
-    let own = load_run(&run.config_path(), &[], None)?;
+    let mut own = load_run(&run.config_path(), &[], None)?;
+    own.resolve_precision(device);
+    // A run stays with what it began with, wherever it is resumed.
+    if loaded.config.train.precision == Precision::Auto {
+        loaded.config.train.precision = own.config.train.precision;
+    }
     if loaded.config.without_paths() != own.config.without_paths() {
         let message =
             format!("{} was started with another config or seed than {}", path.display(), args.config.display());

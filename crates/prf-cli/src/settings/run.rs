@@ -44,6 +44,13 @@ pub(crate) struct LoadedRun {
     pub(crate) warning: Option<SequenceWarning>,
 }
 
+impl LoadedRun {
+    /// Settles `auto` by what this machine is good at.
+    pub(crate) fn resolve_precision(&mut self, device: tch::Device) {
+        self.config.train.precision = self.config.train.precision.resolved(device);
+    }
+}
+
 /// Reads the config at `path`, changed by `sets` and then by `seed`, and the goal it names.
 ///
 /// # Errors
