@@ -11,7 +11,7 @@ use crate::printer::Format;
 pub(super) const PLOT_HELP: &str = "\
 Runs whose configs differ by nothing but the seed are one curve: their interquartile mean or mean on a common grid, from where the last of
 them begins to where the first of them ends, with 95% intervals by bootstrapping over the seeds. A single run is drawn as it is.
-Dashed lines are the mean scores of the world's best player (the oracle) and of a random one over the 100 episodes of `prf eval`.
+Dashed lines are the mean scores of the world's best player (the oracle) in the episodes of the evaluations, and of a random one in 100.
 Records that cannot be read are named on stderr and left out: exit code 3.";
 
 pub(super) const REPORT_HELP: &str = "\

@@ -14,7 +14,7 @@ use crate::printer::{Format, Printer};
 use crate::runs::curves::{LearningCurve, Question};
 use crate::runs::diagram::{Picture, players};
 use crate::runs::group::groups;
-use crate::runs::players::{EPISODES, Players};
+use crate::runs::players::Players;
 use crate::runs::read_all;
 
 /// Where the picture goes unless it is said.
@@ -81,8 +81,9 @@ fn records(curves: &[LearningCurve], players: Option<Players>) -> impl Iterator<
             high: point.interval.map(|[_, high]| high),
         })
     });
-    let players = players.map(|Players { oracle, random }| [("oracle", oracle), ("random", random)]);
-    let player = |(player, score)| Record::Player { player, score, episodes: EPISODES };
+    let players =
+        players.map(|found| [("oracle", found.oracle, found.episodes[0]), ("random", found.random, found.episodes[1])]);
+    let player = |(player, score, episodes)| Record::Player { player, score, episodes };
     points.chain(players.into_iter().flatten().map(player))
 }
 
@@ -100,9 +101,9 @@ fn print(question: &Question, curves: &[LearningCurve], players: Option<Players>
         let (name, seeds, end) = (&curve.name, curve.seeds_in_words(), question.x.shown(last.x));
         printer.line(format_args!("  {name:width$}  {:.3}{interval}  {seeds}, {end}", last.y))?;
     }
-    if let Some(Players { oracle, random }) = players {
-        printer.line(format_args!("  {:width$}  {oracle:.3}  mean of {EPISODES} episodes", "oracle"))?;
-        printer.line(format_args!("  {:width$}  {random:.3}", "random"))?;
+    if let Some(Players { oracle, random, episodes: [_, episodes] }) = players {
+        printer.line(format_args!("  {:width$}  {oracle:.3}  in the same episodes", "oracle"))?;
+        printer.line(format_args!("  {:width$}  {random:.3}  in {episodes} episodes", "random"))?;
     }
     Ok(())
 }

@@ -93,7 +93,7 @@ impl Outcome {
 
     /// The result in a sentence.
     pub(crate) fn headline(&self, name: &str) -> String {
-        let Players { oracle, random } = self.players;
+        let Players { oracle, random, .. } = self.players;
         let step = self.seeds.iter().map(|seed| seed.step).max().unwrap_or(0);
         let score = match self.seeds.as_slice() {
             [] => return format!("{name}: nothing is evaluated yet."),
@@ -227,7 +227,7 @@ mod tests {
     }
 
     fn outcome(seeds: Vec<Seed>) -> Outcome {
-        let players = Players { oracle: 10.0, random: 0.0 };
+        let players = Players { oracle: 10.0, random: 0.0, episodes: [100; 2] };
         Outcome { runs: seeds.len(), finished: seeds.len(), seeds, players, is_perceptual: true }
     }
 
@@ -274,7 +274,7 @@ mod tests {
     fn what_cannot_be_told_is_left_open() {
         let mut open = outcome(vec![seed(1, 0.0, 5.0, 5.0)]);
         open.seeds[0].correlation = None;
-        open.players = Players { oracle: 1.0, random: 1.0 };
+        open.players = Players { oracle: 1.0, random: 1.0, episodes: [100; 2] };
         assert_eq!(
             verdicts(&open),
             [Verdict::Holds, Verdict::Holds, Verdict::Open, Verdict::Holds, Verdict::Open, Verdict::Open]

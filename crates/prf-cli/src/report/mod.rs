@@ -92,7 +92,7 @@ impl<'a> Chapter<'a> {
     fn of(group: &'a Group, printer: &mut Printer) -> Result<Chapter<'a>> {
         let first = &group.runs[0];
         let standings: Vec<Standing> = group.runs.iter().map(|run| Standing::of(run.dir.path())).collect();
-        let outcome = Outcome::of(group, &standings, Players::of(&first.config.env)?);
+        let outcome = Outcome::of(group, &standings, Players::of(&first.config.env, first.config.evaluation.episodes)?);
         let loaded = load_run(&first.dir.config_path(), &[], None);
         let (goal, played) = match loaded {
             Ok(loaded) => (loaded.goal, play(group, printer)),

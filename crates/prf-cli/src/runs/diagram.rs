@@ -21,7 +21,9 @@ pub(crate) struct Picture<'a> {
 pub(crate) fn players(groups: &[Group], y: Quantity) -> Result<Option<Players>> {
     let env = &groups[0].runs[0].config.env;
     let same = groups.iter().all(|group| group.runs.iter().all(|run| run.config.env == *env));
-    (y.is_score() && same).then(|| Players::of(env)).transpose()
+    // Of several counts the largest: its episodes begin with those of the others.
+    let evaluated = groups.iter().flat_map(|group| &group.runs).map(|run| run.config.evaluation.episodes).max();
+    (y.is_score() && same).then(|| Players::of(env, evaluated.unwrap_or(EPISODES))).transpose()
 }
 
 impl Picture<'_> {
@@ -53,7 +55,7 @@ impl Picture<'_> {
     }
 
     fn levels(&self) -> Vec<Level> {
-        let Some(Players { oracle, random }) = self.players else { return Vec::new() };
+        let Some(Players { oracle, random, .. }) = self.players else { return Vec::new() };
         vec![Level { name: "oracle", value: oracle }, Level { name: "random", value: random }]
     }
 
@@ -63,8 +65,8 @@ impl Picture<'_> {
             Some(2..) => format!("{} over seeds with its 95% bootstrap interval", self.question.aggregate.name()),
             _ => "one run a curve".to_owned(),
         };
-        if self.players.is_some() {
-            words.push_str(&format!("; oracle and random: means of {EPISODES} episodes"));
+        if let Some(Players { episodes: [_, random], .. }) = self.players {
+            words.push_str(&format!("; the oracle in the same episodes, a random player in {random}"));
         }
         words
     }

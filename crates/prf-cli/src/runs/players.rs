@@ -6,7 +6,7 @@ use prf_envs::{EnvConfig, registry};
 
 use crate::error::Result;
 
-/// Episodes played by each: those that `prf eval` plays by default.
+/// The fewest episodes of the random player.
 pub(crate) const EPISODES: usize = 100;
 
 /// Mean scores of the players that come with a world.
@@ -14,15 +14,20 @@ pub(crate) const EPISODES: usize = 100;
 pub(crate) struct Players {
     pub(crate) oracle: f64,
     pub(crate) random: f64,
+    /// How many episodes each played.
+    pub(crate) episodes: [usize; 2],
 }
 
 impl Players {
-    pub(crate) fn of(env: &EnvConfig) -> Result<Players> {
+    /// The oracle in the very episodes of the runs' evaluations, so that no agent gets more out of them, and a random player in
+    /// enough of the same kind.
+    pub(crate) fn of(env: &EnvConfig, evaluated: usize) -> Result<Players> {
         let mut world = registry::make(env)?;
-        let seeds = episode_seeds(0, "eval", EPISODES);
+        let seeds = episode_seeds(0, "evaluation", evaluated.max(EPISODES));
         Ok(Players {
-            oracle: mean_score(world.as_mut(), &mut Oracle, seeds.iter().copied())?,
+            oracle: mean_score(world.as_mut(), &mut Oracle, seeds[..evaluated].iter().copied())?,
             random: mean_score(world.as_mut(), &mut Random::new(), seeds.iter().copied())?,
+            episodes: [evaluated, seeds.len()],
         })
     }
 
